@@ -87,10 +87,6 @@ std::string absolute_link(std::string_view text) {
   return to_text(address);
 }
 
-std::span<const std::uint32_t> serial_rates() noexcept {
-  return kSerialRates;
-}
-
 hal::Result<LinkAddress> parse_link(std::string_view text) {
   const std::size_t colon = text.find(':');
   if (colon == std::string_view::npos) {

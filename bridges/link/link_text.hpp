@@ -2,7 +2,6 @@
 // pty:NAME.
 #pragma once
 #include <cstdint>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -29,9 +28,6 @@ std::string to_text(const LinkAddress& address);
 /// The same link for a process with another current folder: a device's path becomes absolute. Other links, and what is
 /// no link at all, stay as they are.
 std::string absolute_link(std::string_view text);
-
-/// Baud rates that serial devices are opened with, ascending.
-std::span<const std::uint32_t> serial_rates() noexcept;
 
 /// Takes a LINK text apart without touching any device. Errors: no scheme, unknown scheme (lists them), nothing after
 /// the colon, a rate that is no number, a baud rate that serial devices do not have (names the nearest).

@@ -1,5 +1,6 @@
 #include "bridges/link/serial_link.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -11,56 +12,23 @@
 #include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
+#include <utility>
 
 namespace tandem::bridges {
 namespace {
 
+using enum LibSerial::BaudRate;
+
+constexpr std::pair<std::uint32_t, LibSerial::BaudRate> kRates[] = {
+    {1200, BAUD_1200},       {2400, BAUD_2400},       {4800, BAUD_4800},       {9600, BAUD_9600},
+    {19200, BAUD_19200},     {38400, BAUD_38400},     {57600, BAUD_57600},     {115200, BAUD_115200},
+    {230400, BAUD_230400},   {460800, BAUD_460800},   {500000, BAUD_500000},   {576000, BAUD_576000},
+    {921600, BAUD_921600},   {1000000, BAUD_1000000}, {1152000, BAUD_1152000}, {1500000, BAUD_1500000},
+    {2000000, BAUD_2000000}, {2500000, BAUD_2500000}, {3000000, BAUD_3000000}, {4000000, BAUD_4000000}};
+
 LibSerial::BaudRate baud_rate(std::uint32_t rate) noexcept {
-  using enum LibSerial::BaudRate;
-  switch (rate) {
-    case 1200:
-      return BAUD_1200;
-    case 2400:
-      return BAUD_2400;
-    case 4800:
-      return BAUD_4800;
-    case 9600:
-      return BAUD_9600;
-    case 19200:
-      return BAUD_19200;
-    case 38400:
-      return BAUD_38400;
-    case 57600:
-      return BAUD_57600;
-    case 115200:
-      return BAUD_115200;
-    case 230400:
-      return BAUD_230400;
-    case 460800:
-      return BAUD_460800;
-    case 500000:
-      return BAUD_500000;
-    case 576000:
-      return BAUD_576000;
-    case 921600:
-      return BAUD_921600;
-    case 1000000:
-      return BAUD_1000000;
-    case 1152000:
-      return BAUD_1152000;
-    case 1500000:
-      return BAUD_1500000;
-    case 2000000:
-      return BAUD_2000000;
-    case 2500000:
-      return BAUD_2500000;
-    case 3000000:
-      return BAUD_3000000;
-    case 4000000:
-      return BAUD_4000000;
-    default:
-      return BAUD_INVALID;
-  }
+  const auto* const found = std::ranges::find(kRates, rate, &std::pair<std::uint32_t, LibSerial::BaudRate>::first);
+  return found == std::end(kRates) ? BAUD_INVALID : found->second;
 }
 
 std::string advice(int error) {
@@ -177,30 +145,12 @@ hal::Result<std::unique_ptr<ByteLink>> SerialLink::open(const LinkAddress& addre
 }
 
 SerialLink::SerialLink(LinkAddress address, std::unique_ptr<Port> port)
-    : address_(std::move(address)), port_(std::move(port)), descriptor_(port_->descriptor()) {}
+    : DescriptorLink(port->descriptor()), address_(std::move(address)), port_(std::move(port)) {}
 
 SerialLink::~SerialLink() = default;
 
-std::size_t SerialLink::write(std::span<const std::uint8_t> bytes, hal::TimeNs budget_ns) noexcept {
-  const hal::TimeNs deadline = monotonic_ns() + budget_ns;
-  std::size_t done = 0;
-  while (done < bytes.size() && open_) {
-    const ssize_t n = ::write(descriptor_, bytes.data() + done, bytes.size() - done);
-    if (n > 0) {
-      done += static_cast<std::size_t>(n);
-    } else if (n < 0 && errno != EAGAIN && errno != EINTR) {
-      hang_up();
-    } else {
-      const hal::TimeNs left = deadline - monotonic_ns();
-      if (left <= 0) break;
-      pollfd p{descriptor_, POLLOUT, 0};
-      ::poll(&p, 1, static_cast<int>((left + hal::kNsPerMs - 1) / hal::kNsPerMs));
-      if ((p.revents & (POLLHUP | POLLERR | POLLNVAL)) != 0) hang_up();
-    }
-  }
-  bytes_out_ += done;
-  bytes_refused_ += bytes.size() - done;
-  return done;
+ssize_t SerialLink::put(std::span<const std::uint8_t> bytes) noexcept {
+  return ::write(descriptor_, bytes.data(), bytes.size());
 }
 
 Received SerialLink::read(std::span<std::uint8_t> buffer) noexcept {
@@ -209,10 +159,7 @@ Received SerialLink::read(std::span<std::uint8_t> buffer) noexcept {
   if (::poll(&p, 1, 0) <= 0) return {};
   const ssize_t n = (p.revents & POLLIN) != 0 ? ::read(descriptor_, buffer.data(), buffer.size()) : 0;
   const bool nothing_yet = n < 0 && (errno == EAGAIN || errno == EINTR);
-  if (n > 0) {
-    bytes_in_ += static_cast<std::uint64_t>(n);
-    return {static_cast<std::size_t>(n), monotonic_ns()};
-  }
+  if (n > 0) return received(n);
   // Readable but empty, or an error: that is how a hang-up shows.
   if (!nothing_yet) hang_up();
   return {};

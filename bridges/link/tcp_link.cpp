@@ -143,37 +143,17 @@ std::unique_ptr<ByteLink> TcpLink::take_over(std::string name, int socket) {
 }
 
 TcpLink::~TcpLink() {
-  ::close(socket_);
+  ::close(descriptor_);
 }
 
-std::size_t TcpLink::write(std::span<const std::uint8_t> bytes, hal::TimeNs budget_ns) noexcept {
-  const hal::TimeNs deadline = monotonic_ns() + budget_ns;
-  std::size_t done = 0;
-  while (done < bytes.size() && open_) {
-    const ssize_t n = ::send(socket_, bytes.data() + done, bytes.size() - done, MSG_NOSIGNAL);
-    if (n > 0) {
-      done += static_cast<std::size_t>(n);
-    } else if (n < 0 && errno != EAGAIN && errno != EINTR) {
-      hang_up();
-    } else {
-      const int left_ms = budget_ns > 0 ? remaining_ms(deadline) : 0;
-      if (left_ms <= 0) break;
-      pollfd p{socket_, POLLOUT, 0};
-      ::poll(&p, 1, left_ms);
-    }
-  }
-  bytes_out_ += done;
-  bytes_refused_ += bytes.size() - done;
-  return done;
+ssize_t TcpLink::put(std::span<const std::uint8_t> bytes) noexcept {
+  return ::send(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
 }
 
 Received TcpLink::read(std::span<std::uint8_t> buffer) noexcept {
   if (!open_ || buffer.empty()) return {};
-  const ssize_t n = ::recv(socket_, buffer.data(), buffer.size(), MSG_DONTWAIT);
-  if (n > 0) {
-    bytes_in_ += static_cast<std::uint64_t>(n);
-    return {static_cast<std::size_t>(n), monotonic_ns()};
-  }
+  const ssize_t n = ::recv(descriptor_, buffer.data(), buffer.size(), MSG_DONTWAIT);
+  if (n > 0) return received(n);
   if (n == 0 || (errno != EAGAIN && errno != EINTR)) hang_up();
   return {};
 }

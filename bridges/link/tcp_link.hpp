@@ -1,13 +1,12 @@
 // A TCP connection as a byte link: to a robot in the network, a serial server (ser2net), asebaswitch, a simulated
 // robot.
 #pragma once
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
 
-#include "bridges/link/link.hpp"
+#include "bridges/link/descriptor_link.hpp"
 
 namespace tandem::bridges {
 
@@ -29,7 +28,7 @@ bool end_connection_of(int process, int descriptor, std::uint16_t port) noexcept
 
 /// A connection made by this side, without delays for small packets, and with keep-alive so that a peer that lost its
 /// power is noticed: 3 to 4 s after its last sign of life the link has hung up.
-class TcpLink final : public ByteLink {
+class TcpLink final : public DescriptorLink {
  public:
   /// Blocks for the look-up of the name, and at most `timeout_ns` for the connection.
   /// Errors, each with what to do: unknown host, refused, no route, no answer. `scheme`: of the LINK text, for names
@@ -42,24 +41,14 @@ class TcpLink final : public ByteLink {
   static std::unique_ptr<ByteLink> take_over(std::string name, int socket);
   ~TcpLink() override;
 
-  std::size_t write(std::span<const std::uint8_t> bytes, hal::TimeNs budget_ns) noexcept override;
   Received read(std::span<std::uint8_t> buffer) noexcept override;
-  bool wait(hal::TimeNs timeout_ns) noexcept override { return wait_for_input(open_ ? socket_ : -1, timeout_ns); }
-  int descriptor() const noexcept override { return socket_; }
-  LinkState state() const noexcept override { return open_ ? LinkState::Open : LinkState::HungUp; }
-  LinkStatistics statistics() const noexcept override { return {bytes_in_, bytes_out_, bytes_refused_, errors_}; }
   std::string name() const override { return name_; }
 
  private:
-  TcpLink(std::string name, int socket) : name_(std::move(name)), socket_(socket) {}
-  void hang_up() noexcept {
-    if (open_.exchange(false)) ++errors_;
-  }
+  TcpLink(std::string name, int socket) : DescriptorLink(socket), name_(std::move(name)) {}
+  ssize_t put(std::span<const std::uint8_t> bytes) noexcept override;
 
   std::string name_;
-  int socket_;
-  std::atomic<bool> open_{true};
-  std::atomic<std::uint64_t> bytes_in_{0}, bytes_out_{0}, bytes_refused_{0}, errors_{0};
 };
 
 }  // namespace tandem::bridges

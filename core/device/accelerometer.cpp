@@ -1,6 +1,7 @@
 // Accelerometers: the specific force on a body, from how its velocity changed within the tick.
 #include <cmath>
 
+#include "core/device/each_robot.hpp"
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
 #include "hal/device/body_sensors.hpp"
@@ -14,13 +15,9 @@ constexpr double kGravity_m_s2 = 9.81;  // of bodies in no engine's region
 constexpr double kLongestWay_m = 0.2;   // in a tick: farther away a body was put, and did not move
 constexpr double kNoTurn = 1e-9;        // sine of half an angle below which nothing turned
 
-struct ForceNoise {
-  double noise_level_m_s2 = 0.0;
-  static ForceNoise noisy() { return {.noise_level_m_s2 = 200 * 1e-3}; }
-  void describe(hal::ParamVisitor& v) {
-    v.number("noise_level", noise_level_m_s2, hal::unit::m_s2, hal::kNotNegative, "Standard deviation on each axis.");
-  }
-};
+constexpr ErrorText kForceNoise{"noise_level", 200 * 1e-3, hal::unit::m_s2, hal::kNotNegative,
+                                "Standard deviation on each axis."};
+using ForceNoise = OneError<kForceNoise>;
 
 /// A body's velocity, and its attitude at the same moment.
 struct MotionBefore {
@@ -71,35 +68,26 @@ hal::Vector3 specific_force(const MotionBefore& from, const MotionBefore& to, do
 
 /// Reads at the middle of the body, averaged over the tick. Engines with forces know velocities; of other bodies, and
 /// of those that are led from outside, the way within the tick is one.
-class AccelerometerSensor final : public Sensor {
+class AccelerometerSensor final : public EachSensor<AccelerometerSensor, hal::Accelerometer, ForceNoise, MotionBefore> {
  public:
-  using Port = hal::Accelerometer;
   using Part = hal::AccelerometerPart;
-  using Errors = ForceNoise;
-  using Kept = MotionBefore;
 
   AccelerometerSensor(const DeviceSetup& setup, const Errors& errors, const BlockColumns& columns)
-      : fastest_m_s_(setup.kind.drive() != nullptr ? setup.kind.drive()->max_speed_m_s : 0.0),
-        noise_m_s2_(errors.noise_level_m_s2),
-        before_(columns.find<MotionBefore>()) {}
+      : EachSensor(setup, errors, columns),
+        fastest_m_s_(setup.kind.drive() != nullptr ? setup.kind.drive()->max_speed_m_s : 0.0) {}
 
-  void sense(const DeviceContext& context, void* ports) noexcept override {
-    auto* meters = static_cast<hal::Accelerometer*>(ports);
-    for (std::size_t i = 0; i < context.block.used; ++i) {
-      const std::size_t row = context.block.first_row + i;
-      const MotionBefore now = motion_of(context, row, before_[i]);
-      hal::Vector3 force = specific_force(before_[i].seen ? before_[i] : at_rest(now), now,
-                                          gravity(context.stores, row), context.tick_s);
-      before_[i] = now;
-      if (noise_m_s2_ > 0.0) {
-        const auto bits =
-            draw(context.seed, context.stores.bodies.entity[row], Stream::AccelerometerNoise, context.tick);
-        const auto xy = to_normal(bits[0], bits[1]);
-        force += noise_m_s2_ * hal::Vector3(xy[0], xy[1], to_normal(bits[2], bits[3])[0]);
-      }
-      stamp(context, meters[i]);
-      for (int k = 0; k < 3; ++k) meters[i].force_m_s2[static_cast<std::size_t>(k)] = static_cast<float>(force[k]);
+  void read(const RobotAt& robot, hal::Accelerometer& port) const noexcept {
+    MotionBefore& before = kept_[robot.i];
+    const MotionBefore now = motion_of(robot.context, robot.row(), before);
+    hal::Vector3 force = specific_force(before.seen ? before : at_rest(now), now,
+                                        gravity(robot.context.stores, robot.row()), robot.context.tick_s);
+    before = now;
+    if (errors_.amount > 0.0) {
+      const auto bits = robot.draw(Stream::AccelerometerNoise);
+      const auto xy = to_normal(bits[0], bits[1]);
+      force += errors_.amount * hal::Vector3(xy[0], xy[1], to_normal(bits[2], bits[3])[0]);
     }
+    for (int k = 0; k < 3; ++k) port.force_m_s2[static_cast<std::size_t>(k)] = static_cast<float>(force[k]);
   }
 
  private:
@@ -139,8 +127,6 @@ class AccelerometerSensor final : public Sensor {
   }
 
   double fastest_m_s_;
-  double noise_m_s2_;
-  MotionBefore* before_;
 };
 
 }  // namespace

@@ -38,6 +38,22 @@ void each_body_in_line(const SpaceStores& stores, std::size_t row, See&& see) no
   });
 }
 
+/// Calls `use(z_m)` for what objects there are below (`upwards` -1) or above (1) a place of the row's body, at
+/// `from_m`.
+template <class Use>
+void each_object_in_line(const SpaceStores& stores, std::size_t row, double from_m, double upwards, const Use& use) {
+  if (stores.objects.empty()) return;
+  const double x_m = stores.bodies.x_m[row], y_m = stores.bodies.y_m[row];
+  const bool lean = anything_may_lean(stores);
+  stores.for_each_object_near(x_m, y_m, [&](const Object& o) {
+    if (!o.alive) return;
+    if (lean && leans(turn_of(stores, o)))
+      use(from_m + upwards * straight_to(stores, o, {x_m, y_m, from_m}, upwards));
+    else if (covers(o, x_m, y_m))
+      use(upwards < 0.0 ? o.z_high_m : o.z_low_m);
+  });
+}
+
 }  // namespace
 
 double ceiling_m(const SpaceStores& stores, std::size_t row) noexcept {
@@ -46,45 +62,25 @@ double ceiling_m(const SpaceStores& stores, std::size_t row) noexcept {
 }
 
 double room_below_m(const SpaceStores& stores, std::size_t row, bool bodies) noexcept {
-  const Bodies& b = stores.bodies;
   const double base_m = stores.base_m(row);
-  const std::uint16_t region = b.region[row];
+  const std::uint16_t region = stores.bodies.region[row];
   double highest_m = 0.0;
   if (region != kNoRegion && stores.regions[region].bottom_m > kNoBottom_m) highest_m = stores.regions[region].bottom_m;
   const auto consider = [&](double top_m) {
     if (top_m <= base_m + kWithin_m) highest_m = std::max(highest_m, top_m);
   };
-  const bool lean = anything_may_lean(stores);
-  if (!stores.objects.empty()) {
-    stores.for_each_object_near(b.x_m[row], b.y_m[row], [&](const Object& o) {
-      if (!o.alive) return;
-      if (lean && leans(turn_of(stores, o)))
-        consider(base_m + kWithin_m - straight_to(stores, o, {b.x_m[row], b.y_m[row], base_m + kWithin_m}, -1.0));
-      else if (covers(o, b.x_m[row], b.y_m[row]))
-        consider(o.z_high_m);
-    });
-  }
+  each_object_in_line(stores, row, base_m + kWithin_m, -1.0, consider);
   if (bodies) each_body_in_line(stores, row, [&](double, double high_m) { consider(high_m); });
   return std::max(0.0, base_m - highest_m);
 }
 
 double room_above_m(const SpaceStores& stores, std::size_t row) noexcept {
-  const Bodies& b = stores.bodies;
   const double top_m = stores.base_m(row) + stores.kind_of_row(row).body.height_m;
   double lowest_m = ceiling_m(stores, row);
   const auto consider = [&](double low_m) {
     if (low_m >= top_m - kWithin_m) lowest_m = std::min(lowest_m, low_m);
   };
-  const bool lean = anything_may_lean(stores);
-  if (!stores.objects.empty()) {
-    stores.for_each_object_near(b.x_m[row], b.y_m[row], [&](const Object& o) {
-      if (!o.alive) return;
-      if (lean && leans(turn_of(stores, o)))
-        consider(top_m - kWithin_m + straight_to(stores, o, {b.x_m[row], b.y_m[row], top_m - kWithin_m}, 1.0));
-      else if (covers(o, b.x_m[row], b.y_m[row]))
-        consider(o.z_low_m);
-    });
-  }
+  each_object_in_line(stores, row, top_m - kWithin_m, 1.0, consider);
   each_body_in_line(stores, row, [&](double low_m, double) { consider(low_m); });
   return std::max(0.0, lowest_m - top_m);
 }

@@ -1,4 +1,5 @@
 // Sensors of a robot's own state and of the air: turn rates, sound, battery, clock.
+#include "core/device/each_robot.hpp"
 #include "core/device/field_ring.hpp"
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
@@ -35,37 +36,27 @@ struct RateNoise {
 };
 
 /// Turn rates as the body's engine knows them; one that has no forces turns bodies as their wheels say.
-class GyroscopeSensor final : public Sensor {
+class GyroscopeSensor final : public EachSensor<GyroscopeSensor, hal::Gyroscope, RateNoise> {
  public:
-  using Port = hal::Gyroscope;
   using Part = hal::GyroscopePart;
-  using Errors = RateNoise;
 
-  GyroscopeSensor(const DeviceSetup& setup, const Errors& errors, const BlockColumns&)
-      : wheel_base_m_(wheel_base_m(setup.kind)),
-        noise_rad_s_(errors.noise_level_rad_s),
-        bias_rad_s_(errors.bias_rad_s) {}
+  GyroscopeSensor(const DeviceSetup& setup, const Errors& errors, const BlockColumns& columns)
+      : EachSensor(setup, errors, columns), wheel_base_m_(wheel_base_m(setup.kind)) {}
 
-  void sense(const DeviceContext& context, void* ports) noexcept override {
-    auto* gyroscopes = static_cast<hal::Gyroscope*>(ports);
-    const Bodies& b = context.stores.bodies;
-    for (std::size_t i = 0; i < context.block.used; ++i) {
-      const std::size_t row = context.block.first_row + i;
-      std::array<double, 3> rate = rates(context.stores, row);
-      if (noise_rad_s_ > 0.0) {
-        const auto bits = draw(context.seed, b.entity[row], Stream::GyroscopeNoise, context.tick);
-        const auto xy = to_normal(bits[0], bits[1]);
-        rate[0] += noise_rad_s_ * xy[0];
-        rate[1] += noise_rad_s_ * xy[1];
-        rate[2] += noise_rad_s_ * to_normal(bits[2], bits[3])[0];
-      }
-      if (bias_rad_s_ > 0.0) {
-        const auto bits = draw(context.seed, b.entity[row], Stream::GyroscopeBias, 0);
-        for (std::size_t k = 0; k < 3; ++k) rate[k] += bias_rad_s_ * to_symmetric(bits[k]);
-      }
-      stamp(context, gyroscopes[i]);
-      for (std::size_t k = 0; k < 3; ++k) gyroscopes[i].rate_rad_s[k] = static_cast<float>(rate[k]);
+  void read(const RobotAt& robot, hal::Gyroscope& port) const noexcept {
+    std::array<double, 3> rate = rates(robot.context.stores, robot.row());
+    if (errors_.noise_level_rad_s > 0.0) {
+      const auto bits = robot.draw(Stream::GyroscopeNoise);
+      const auto xy = to_normal(bits[0], bits[1]);
+      rate[0] += errors_.noise_level_rad_s * xy[0];
+      rate[1] += errors_.noise_level_rad_s * xy[1];
+      rate[2] += errors_.noise_level_rad_s * to_normal(bits[2], bits[3])[0];
     }
+    if (errors_.bias_rad_s > 0.0) {
+      const auto bits = draw(robot.context.seed, robot.bodies().entity[robot.row()], Stream::GyroscopeBias, 0);
+      for (std::size_t k = 0; k < 3; ++k) rate[k] += errors_.bias_rad_s * to_symmetric(bits[k]);
+    }
+    for (std::size_t k = 0; k < 3; ++k) port.rate_rad_s[k] = static_cast<float>(rate[k]);
   }
 
  private:
@@ -82,20 +73,13 @@ class GyroscopeSensor final : public Sensor {
   }
 
   double wheel_base_m_;
-  double noise_rad_s_;
-  double bias_rad_s_;
 };
 
 // --- microphones ---
 
-struct SoundNoise {
-  double noise_level = 0.0;
-  static SoundNoise noisy() { return {.noise_level = 20 * 1e-3}; }
-  void describe(hal::ParamVisitor& v) {
-    v.number("noise_level", noise_level, hal::unit::none, {0.0, 1.0},
-             "Background noise, 0 to this, on each microphone.");
-  }
-};
+constexpr ErrorText kSoundNoise{
+    "noise_level", 20 * 1e-3, hal::unit::none, {0.0, 1.0}, "Background noise, 0 to this, on each microphone."};
+using SoundNoise = OneError<kSoundNoise>;
 
 /// At most 1.
 class MicrophoneSensor final : public Sensor {
@@ -106,7 +90,7 @@ class MicrophoneSensor final : public Sensor {
   static constexpr std::string_view kField = "sound";
 
   MicrophoneSensor(const DeviceSetup& setup, const Errors& errors, const BlockColumns&)
-      : ring_(*setup.fields->find(kField), setup.kind.part<Part>()->mounts), noise_(errors.noise_level) {}
+      : ring_(*setup.fields->find(kField), setup.kind.part<Part>()->mounts), noise_(errors.amount) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     ring_.sample(context, [&](std::size_t i, const double* values) {
@@ -128,59 +112,39 @@ class MicrophoneSensor final : public Sensor {
 
 // --- battery ---
 
-struct ChargeNoise {
-  double noise_range = 0.0;
-  static ChargeNoise noisy() { return {.noise_range = 10 * 1e-3}; }
-  void describe(hal::ParamVisitor& v) {
-    v.number("noise_range", noise_range, hal::unit::none, {0.0, 1.0}, "Uniform noise of +-this on the charge reading.");
-  }
-};
+constexpr ErrorText kChargeNoise{
+    "noise_range", 10 * 1e-3, hal::unit::none, {0.0, 1.0}, "Uniform noise of +-this on the charge reading."};
+using ChargeNoise = OneError<kChargeNoise>;
 
 /// ARGoS' three discharge models: a part a tick, a part a metre and a radian moved, or both.
-class BatterySensor final : public Sensor {
+class BatterySensor final : public EachSensor<BatterySensor, hal::Battery, ChargeNoise, ChargeState> {
  public:
-  using Port = hal::Battery;
   using Part = hal::BatteryPart;
-  using Errors = ChargeNoise;
   static void prepare(BlockFactory<Sensor>& factory, const DeviceSetup& setup, const Errors&) {
     factory.columns = {keeps(ChargeState{setup.item->battery.start_charge})};
   }
 
   BatterySensor(const DeviceSetup& setup, const Errors& errors, const BlockColumns& columns)
-      : config_(setup.item->battery),
-        noise_(errors.noise_range),
-        full_V_(setup.kind.part<hal::BatteryPart>()->full_V),
-        empty_V_(setup.kind.part<hal::BatteryPart>()->empty_V),
+      : EachSensor(setup, errors, columns),
+        config_(setup.item->battery),
+        part_(*setup.kind.part<Part>()),
         wheel_base_m_(wheel_base_m(setup.kind)),
-        charges_(columns.find<ChargeState>()) {
-    by_time_ = config_.model != "motion";
-    by_motion_ = config_.model != "time";
-  }
+        by_time_(config_.model != "motion"),
+        by_motion_(config_.model != "time") {}
 
-  void sense(const DeviceContext& context, void* ports) noexcept override {
-    auto* batteries = static_cast<hal::Battery*>(ports);
-    const Bodies& b = context.stores.bodies;
-    for (std::size_t i = 0; i < context.block.used; ++i) {
-      const std::size_t row = context.block.first_row + i;
-      double used = by_time_ ? config_.delta : 0.0;
-      if (by_motion_) {
-        const Way way = wheel_base_m_ > 0.0 ? rolled(b, row) : flown(b, row);
-        used += context.tick_s * (config_.pos_delta * way.speed_m_s + config_.orient_delta * way.turn_rad_s);
-      }
-      double& charge = charges_[i].charge;
-      charge = std::max(0.0, charge - used);
-      double read = config_.full_charge > 0.0 ? charge / config_.full_charge : 0.0;
-      if (noise_ > 0.0) {
-        const auto bits = draw(context.seed, b.entity[row], Stream::BatteryNoise, context.tick);
-        read += noise_ * (2.0 * to_unit(bits[0]) - 1.0);
-      }
-      read = std::min(std::max(read, 0.0), 1.0);
-      hal::Battery& port = batteries[i];
-      port.taken_ns = context.now_ns;
-      port.validity = hal::Validity::Fresh;
-      port.charge = static_cast<float>(read);
-      port.supply_V = static_cast<float>(empty_V_ + read * (full_V_ - empty_V_));
+  void read(const RobotAt& robot, hal::Battery& port) const noexcept {
+    double used = by_time_ ? config_.delta : 0.0;
+    if (by_motion_) {
+      const Way way = wheel_base_m_ > 0.0 ? rolled(robot.bodies(), robot.row()) : flown(robot.bodies(), robot.row());
+      used += robot.context.tick_s * (config_.pos_delta * way.speed_m_s + config_.orient_delta * way.turn_rad_s);
     }
+    double& charge = kept_[robot.i].charge;
+    charge = std::max(0.0, charge - used);
+    double read = config_.full_charge > 0.0 ? charge / config_.full_charge : 0.0;
+    if (errors_.amount > 0.0) read += errors_.amount * to_symmetric(robot.draw(Stream::BatteryNoise)[0]);
+    read = std::min(std::max(read, 0.0), 1.0);
+    port.charge = static_cast<float>(read);
+    port.supply_V = static_cast<float>(part_.empty_V + read * (part_.full_V - part_.empty_V));
   }
 
  private:
@@ -199,50 +163,29 @@ class BatterySensor final : public Sensor {
   }
 
   BatteryConfig config_;
-  double noise_;
-  double full_V_, empty_V_, wheel_base_m_;
-  ChargeState* charges_;
-  bool by_time_ = true;
-  bool by_motion_ = false;
+  const hal::BatteryPart& part_;
+  double wheel_base_m_;
+  bool by_time_, by_motion_;
 };
 
 // --- clock ---
 
-struct ClockNoise {
-  double jitter_s = 0.0;
-  static ClockNoise noisy() { return {.jitter_s = 1000 * 1e-6}; }
-  void describe(hal::ParamVisitor& v) {
-    v.number("jitter", jitter_s, hal::unit::ms, {0.0, 1.0},
-             "Standard deviation of the time that is read; ticks stay exact.");
-  }
-};
+constexpr ErrorText kClockNoise{
+    "jitter", 1000 * 1e-6, hal::unit::ms, {0.0, 1.0}, "Standard deviation of the time that is read; ticks stay exact."};
+using ClockNoise = OneError<kClockNoise>;
 
-class ClockSensor final : public Sensor {
+class ClockSensor final : public EachSensor<ClockSensor, hal::Clock, ClockNoise> {
  public:
-  using Port = hal::Clock;
-  using Errors = ClockNoise;
+  using EachSensor::EachSensor;
 
-  ClockSensor(const DeviceSetup&, const Errors& errors, const BlockColumns&) : jitter_s_(errors.jitter_s) {}
-
-  void sense(const DeviceContext& context, void* ports) noexcept override {
-    auto* clocks = static_cast<hal::Clock*>(ports);
-    for (std::size_t i = 0; i < context.block.used; ++i) {
-      hal::Clock& port = clocks[i];
-      port.taken_ns = context.now_ns;
-      port.validity = hal::Validity::Fresh;
-      port.tick = context.tick;
-      port.now_ns = context.now_ns;
-      port.tick_s = context.tick_s;
-      if (jitter_s_ > 0.0) {
-        const std::uint32_t entity = context.stores.bodies.entity[context.block.first_row + i];
-        const auto bits = draw(context.seed, entity, Stream::ClockNoise, context.tick);
-        port.now_ns += static_cast<hal::TimeNs>(std::llround(1e9 * jitter_s_ * to_normal(bits[0], bits[1])[0]));
-      }
-    }
+  void read(const RobotAt& robot, hal::Clock& port) const noexcept {
+    port.tick = robot.context.tick;
+    port.now_ns = robot.context.now_ns;
+    port.tick_s = robot.context.tick_s;
+    if (errors_.amount <= 0.0) return;
+    const auto bits = robot.draw(Stream::ClockNoise);
+    port.now_ns += static_cast<hal::TimeNs>(std::llround(1e9 * errors_.amount * to_normal(bits[0], bits[1])[0]));
   }
-
- private:
-  double jitter_s_;
 };
 
 }  // namespace

@@ -21,6 +21,7 @@ void describe_options(hal::ParamVisitor& visitor) {
 }
 
 struct NoOptions {
+  static NoOptions noisy() { return {}; }
   void describe(hal::ParamVisitor&) {}
 };
 

@@ -1,6 +1,7 @@
 // Distance scanners: the actuator that turns them, and what their heads measured during the tick.
 #include "hal/device/distance_scanner.hpp"
 
+#include "core/device/each_robot.hpp"
 #include "core/device/far_rays.hpp"
 #include "core/device/types.hpp"
 #include "core/space/mechanisms.hpp"
@@ -15,58 +16,45 @@ using hal::ScannerMode;
 
 // --- actuator ---
 
-struct TurnErrors {
-  double noise_std_dev = 0.0;
-  static TurnErrors noisy() { return {.noise_std_dev = 50 * 1e-3}; }
-  void describe(hal::ParamVisitor& v) {
-    v.number("noise_std_dev", noise_std_dev, hal::unit::none, {0.0, 1.0},
-             "Standard deviation of the turn rate's relative error, drawn every tick.");
-  }
-};
+constexpr ErrorText kTurnErrors{"noise_std_dev",
+                                50 * 1e-3,
+                                hal::unit::none,
+                                {0.0, 1.0},
+                                "Standard deviation of the turn rate's relative error, drawn every tick."};
+using TurnErrors = OneError<kTurnErrors>;
 
-class ScannerActuator final : public Actuator {
+class ScannerActuator final : public EachActuator<ScannerActuator, hal::ScannerDrive, TurnErrors, ScannerState> {
  public:
-  using Port = hal::ScannerDrive;
   using Part = hal::ScannerPart;
-  using Errors = TurnErrors;
-  using Kept = ScannerState;
 
   ScannerActuator(const DeviceSetup& setup, const Errors& errors, const BlockColumns& columns)
-      : fastest_rad_s_(setup.kind.part<Part>()->turn_rad_s),
-        noise_(errors.noise_std_dev),
-        scanners_(columns.find<ScannerState>()) {}
+      : EachActuator(setup, errors, columns), fastest_rad_s_(setup.kind.part<Part>()->turn_rad_s) {}
 
-  void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
-    const auto* drives = static_cast<const hal::ScannerDrive*>(ports);
-    for (std::size_t i = 0; i < context.block.used; ++i) {
-      if (led_from_outside(context, i)) continue;
-      const std::size_t row = context.block.first_row + i;
-      ScannerState& scanner = scanners_[i];
-      scanner.mode = obeys(context, i) ? drives[i].mode : ScannerMode::Off;
-      scanner.swept_rad = step_rad(context, stores.bodies.entity[row], scanner, drives[i]);
-      scanner.angle_rad = hal::wrapped(scanner.angle_rad + scanner.swept_rad);
-    }
+  void obey(const RobotAt& robot, const hal::ScannerDrive& drive) const noexcept {
+    if (led_from_outside(robot.context, robot.i)) return;
+    ScannerState& scanner = kept_[robot.i];
+    scanner.mode = obeys(robot.context, robot.i) ? drive.mode : ScannerMode::Off;
+    scanner.swept_rad = step_rad(robot, scanner, drive);
+    scanner.angle_rad = hal::wrapped(scanner.angle_rad + scanner.swept_rad);
   }
 
  private:
-  double step_rad(const DeviceContext& context, std::uint32_t entity, const ScannerState& scanner,
-                  const hal::ScannerDrive& drive) const noexcept {
+  double step_rad(const RobotAt& robot, const ScannerState& scanner, const hal::ScannerDrive& drive) const noexcept {
+    const double tick_s = robot.context.tick_s;
     if (scanner.mode == ScannerMode::Position) {
-      const double most_rad = fastest_rad_s_ * context.tick_s;
+      const double most_rad = fastest_rad_s_ * tick_s;
       return std::clamp(hal::wrapped(drive.angle_rad - scanner.angle_rad), -most_rad, most_rad);
     }
     if (scanner.mode != ScannerMode::Speed) return 0.0;
     double error = 0.0;
-    if (noise_ > 0.0) {
-      const auto bits = draw(context.seed, entity, Stream::ScannerDriveNoise, context.tick);
-      error = noise_ * to_normal(bits[0], bits[1])[0];
+    if (errors_.amount > 0.0) {
+      const auto bits = robot.draw(Stream::ScannerDriveNoise);
+      error = errors_.amount * to_normal(bits[0], bits[1])[0];
     }
-    return drive.speed_rad_s * (1.0 + error) * context.tick_s;
+    return drive.speed_rad_s * (1.0 + error) * tick_s;
   }
 
   double fastest_rad_s_;
-  double noise_;
-  ScannerState* scanners_;
 };
 
 // --- sensor ---

@@ -2,6 +2,7 @@
 // is.
 #include "hal/device/flight.hpp"
 
+#include "core/device/each_robot.hpp"
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
 #include "core/space/mechanisms.hpp"
@@ -11,141 +12,103 @@ namespace {
 
 // --- actuators ---
 
-struct TargetErrors {
-  double noise_std_dev = 0.0;
-  static TargetErrors noisy() { return {.noise_std_dev = 10 * 1e-3}; }
-  void describe(hal::ParamVisitor& v) {
-    v.number("noise_std_dev", noise_std_dev, hal::unit::m, hal::kNotNegative,
-             "Standard deviation of the target on each axis, drawn every tick.");
-  }
-};
+constexpr ErrorText kTargetErrors{"noise_std_dev", 10 * 1e-3, hal::unit::m, hal::kNotNegative,
+                                  "Standard deviation of the target on each axis, drawn every tick."};
+using TargetErrors = OneError<kTargetErrors>;
 
-struct VelocityErrors {
-  double noise_std_dev = 0.0;
-  static VelocityErrors noisy() { return {.noise_std_dev = 20 * 1e-3}; }
-  void describe(hal::ParamVisitor& v) {
-    v.number("noise_std_dev", noise_std_dev, hal::unit::m_s, hal::kNotNegative,
-             "Standard deviation of the velocity on each axis, drawn every tick.");
-  }
-};
+constexpr ErrorText kVelocityErrors{"noise_std_dev", 20 * 1e-3, hal::unit::m_s, hal::kNotNegative,
+                                    "Standard deviation of the velocity on each axis, drawn every tick."};
+using VelocityErrors = OneError<kVelocityErrors>;
 
-struct AttitudeErrors {
-  double noise_std_dev = 0.0;
-  static AttitudeErrors noisy() { return {.noise_std_dev = 10 * 1e-3}; }
-  void describe(hal::ParamVisitor& v) {
-    v.number("noise_std_dev", noise_std_dev, hal::unit::rad, hal::kNotNegative,
-             "Standard deviation of roll and pitch, and of the thrust in parts of the weight, drawn every tick.");
-  }
-};
+constexpr ErrorText kAttitudeErrors{
+    "noise_std_dev", 10 * 1e-3, hal::unit::rad, hal::kNotNegative,
+    "Standard deviation of roll and pitch, and of the thrust in parts of the weight, drawn every tick."};
+using AttitudeErrors = OneError<kAttitudeErrors>;
 
-struct TaskErrors {
-  double noise_std_dev = 0.0;
-  static TaskErrors noisy() { return {.noise_std_dev = 50 * 1e-3}; }
-  void describe(hal::ParamVisitor& v) {
-    v.number("noise_std_dev", noise_std_dev, hal::unit::none, {0.0, 0.3},
-             "Standard deviation of the relative error of the speed to climb or sink with, drawn every tick.");
-  }
-};
+constexpr ErrorText kTaskErrors{
+    "noise_std_dev",
+    50 * 1e-3,
+    hal::unit::none,
+    {0.0, 0.3},
+    "Standard deviation of the relative error of the speed to climb or sink with, drawn every tick."};
+using TaskErrors = OneError<kTaskErrors>;
 
 /// Three errors with this standard deviation.
-std::array<double, 3> errors(const DeviceContext& context, std::size_t row, Stream stream, double std_dev) noexcept {
-  const auto bits = draw(context.seed, context.stores.bodies.entity[row], stream, context.tick);
+std::array<double, 3> errors(const RobotAt& robot, Stream stream, double std_dev) noexcept {
+  const auto bits = robot.draw(stream);
   const auto xy = to_normal(bits[0], bits[1]);
   return {std_dev * xy[0], std_dev * xy[1], std_dev * to_normal(bits[2], bits[3])[0]};
 }
 
 /// Each flight actuator notes what its port asks for; which of them counts is seen once all have
 /// (core/device/piloting).
-template <class OfPort, class OfErrors>
-class FlightActuator : public Actuator {
+template <class Self, class OfPort, class OfErrors>
+class FlightActuator : public EachActuator<Self, OfPort, OfErrors, FlightSetpoint> {
  public:
-  using Port = OfPort;
   using Part = hal::Quadrotor;
-  using Errors = OfErrors;
+  using FlightActuator::EachActuator::EachActuator;
 
-  FlightActuator(const DeviceSetup&, const Errors& errors, const BlockColumns& columns)
-      : noise_(errors.noise_std_dev), setpoints_(columns.find<FlightSetpoint>()) {}
-  static void prepare(BlockFactory<Actuator>& factory, const DeviceSetup&, const Errors&) {
+  static void prepare(BlockFactory<Actuator>& factory, const DeviceSetup&, const OfErrors&) {
     factory.columns = {keeps<FlightSetpoint>(), keeps<PilotState>()};
   }
-
- protected:
-  double noise_;
-  FlightSetpoint* setpoints_;
 };
 
-class PositionActuator final : public FlightActuator<hal::QuadrotorPosition, TargetErrors> {
+class PositionActuator final : public FlightActuator<PositionActuator, hal::QuadrotorPosition, TargetErrors> {
  public:
   using FlightActuator::FlightActuator;
 
-  void act(const DeviceContext& context, SpaceStores& /*stores*/, const void* ports) noexcept override {
-    const auto* targets = static_cast<const hal::QuadrotorPosition*>(ports);
-    for (std::size_t i = 0; i < context.block.used; ++i) {
-      const std::size_t row = context.block.first_row + i;
-      FlightSetpoint& setpoint = setpoints_[i];
-      setpoint.to_place = !targets[i].hold;
-      setpoint.target_m = targets[i].target;
-      setpoint.heading_rad = targets[i].yaw_rad;
-      if (noise_ == 0.0 || !setpoint.to_place) continue;
-      const auto error = errors(context, row, Stream::FlightNoise, noise_);
-      for (std::size_t k = 0; k < 3; ++k) setpoint.target_m[k] += error[k];
-    }
+  void obey(const RobotAt& robot, const hal::QuadrotorPosition& target) const noexcept {
+    FlightSetpoint& setpoint = kept_[robot.i];
+    setpoint.to_place = !target.hold;
+    setpoint.target_m = target.target;
+    setpoint.heading_rad = target.yaw_rad;
+    if (errors_.amount == 0.0 || !setpoint.to_place) return;
+    const auto error = errors(robot, Stream::FlightNoise, errors_.amount);
+    for (std::size_t k = 0; k < 3; ++k) setpoint.target_m[k] += error[k];
   }
 };
 
-class SpeedActuator final : public FlightActuator<hal::QuadrotorSpeed, VelocityErrors> {
+class SpeedActuator final : public FlightActuator<SpeedActuator, hal::QuadrotorSpeed, VelocityErrors> {
  public:
   using FlightActuator::FlightActuator;
 
-  void act(const DeviceContext& context, SpaceStores& /*stores*/, const void* ports) noexcept override {
-    const auto* speeds = static_cast<const hal::QuadrotorSpeed*>(ports);
-    for (std::size_t i = 0; i < context.block.used; ++i) {
-      const std::size_t row = context.block.first_row + i;
-      FlightSetpoint& setpoint = setpoints_[i];
-      setpoint.velocity_m_s = speeds[i].velocity;
-      setpoint.turn_rad_s = speeds[i].yaw_rad_s;
-      if (noise_ == 0.0) continue;
-      const auto error = errors(context, row, Stream::FlightNoise, noise_);
-      for (std::size_t k = 0; k < 3; ++k) setpoint.velocity_m_s[k] += error[k];
-    }
+  void obey(const RobotAt& robot, const hal::QuadrotorSpeed& speed) const noexcept {
+    FlightSetpoint& setpoint = kept_[robot.i];
+    setpoint.velocity_m_s = speed.velocity;
+    setpoint.turn_rad_s = speed.yaw_rad_s;
+    if (errors_.amount == 0.0) return;
+    const auto error = errors(robot, Stream::FlightNoise, errors_.amount);
+    for (std::size_t k = 0; k < 3; ++k) setpoint.velocity_m_s[k] += error[k];
   }
 };
 
-class AttitudeActuator final : public FlightActuator<hal::QuadrotorAttitude, AttitudeErrors> {
+class AttitudeActuator final : public FlightActuator<AttitudeActuator, hal::QuadrotorAttitude, AttitudeErrors> {
  public:
   using FlightActuator::FlightActuator;
 
-  void act(const DeviceContext& context, SpaceStores& /*stores*/, const void* ports) noexcept override {
-    const auto* attitudes = static_cast<const hal::QuadrotorAttitude*>(ports);
-    for (std::size_t i = 0; i < context.block.used; ++i) {
-      const std::size_t row = context.block.first_row + i;
-      hal::QuadrotorAttitude& setpoint = setpoints_[i].attitude;
-      setpoint = attitudes[i];
-      if (noise_ == 0.0 || !setpoint.active) continue;
-      const auto error = errors(context, row, Stream::AttitudeNoise, noise_);
-      setpoint.roll_rad += error[0];
-      setpoint.pitch_rad += error[1];
-      setpoint.thrust = std::max(0.0, setpoint.thrust + error[2]);
-    }
+  void obey(const RobotAt& robot, const hal::QuadrotorAttitude& attitude) const noexcept {
+    hal::QuadrotorAttitude& setpoint = kept_[robot.i].attitude;
+    setpoint = attitude;
+    if (errors_.amount == 0.0 || !setpoint.active) return;
+    const auto error = errors(robot, Stream::AttitudeNoise, errors_.amount);
+    setpoint.roll_rad += error[0];
+    setpoint.pitch_rad += error[1];
+    setpoint.thrust = std::max(0.0, setpoint.thrust + error[2]);
   }
 };
 
-class TaskActuator final : public FlightActuator<hal::FlightTask, TaskErrors> {
+class TaskActuator final : public FlightActuator<TaskActuator, hal::FlightTask, TaskErrors> {
  public:
   using FlightActuator::FlightActuator;
 
-  void act(const DeviceContext& context, SpaceStores& /*stores*/, const void* ports) noexcept override {
-    const auto* tasks = static_cast<const hal::FlightTask*>(ports);
-    const hal::Quadrotor& flight = *context.group.kind->flight();
-    for (std::size_t i = 0; i < context.block.used; ++i) {
-      const std::size_t row = context.block.first_row + i;
-      hal::FlightTask& setpoint = setpoints_[i].task;
-      setpoint = tasks[i];
-      if (noise_ == 0.0) continue;
-      if (setpoint.speed_m_s == 0.0)
-        setpoint.speed_m_s = setpoint.order == hal::FlightOrder::Land ? flight.sink_m_s : flight.climb_m_s;
-      setpoint.speed_m_s *= std::max(0.1, 1.0 + errors(context, row, Stream::TaskNoise, noise_)[0]);
-    }
+  void obey(const RobotAt& robot, const hal::FlightTask& task) const noexcept {
+    const hal::Quadrotor& flight = *robot.context.group.kind->flight();
+    hal::FlightTask& setpoint = kept_[robot.i].task;
+    setpoint = task;
+    if (errors_.amount == 0.0) return;
+    if (setpoint.speed_m_s == 0.0)
+      setpoint.speed_m_s = setpoint.order == hal::FlightOrder::Land ? flight.sink_m_s : flight.climb_m_s;
+    setpoint.speed_m_s *= std::max(0.1, 1.0 + errors(robot, Stream::TaskNoise, errors_.amount)[0]);
   }
 };
 
@@ -167,26 +130,17 @@ struct PlaceErrors {
   }
 };
 
-class PositioningSensor final : public Sensor {
+class PositioningSensor final : public EachSensor<PositioningSensor, hal::Positioning, PlaceErrors> {
  public:
-  using Port = hal::Positioning;
-  using Errors = PlaceErrors;
+  using EachSensor::EachSensor;
 
-  PositioningSensor(const DeviceSetup&, const Errors& errors, const BlockColumns&) : errors_(errors) {}
-
-  void sense(const DeviceContext& context, void* ports) noexcept override {
-    auto* places = static_cast<hal::Positioning*>(ports);
-    const Bodies& b = context.stores.bodies;
-    for (std::size_t i = 0; i < context.block.used; ++i) {
-      const std::size_t row = context.block.first_row + i;
-      hal::Positioning& port = places[i];
-      port.taken_ns = context.now_ns;
-      port.validity = hal::Validity::Fresh;
-      port.p_WB = {b.x_m[row], b.y_m[row], context.stores.base_m(row)};
-      port.q_WB = b.motion.empty() ? upright(b.cos_h[row], b.sin_h[row]) : b.motion[row].q_WB;
-      if (errors_.pos_noise_m > 0.0 || errors_.angle_noise_rad > 0.0 || errors_.axis_noise > 0.0)
-        add_noise(context, b.entity[row], port);
-    }
+  void read(const RobotAt& robot, hal::Positioning& port) const noexcept {
+    const Bodies& b = robot.bodies();
+    const std::size_t row = robot.row();
+    port.p_WB = {b.x_m[row], b.y_m[row], robot.context.stores.base_m(row)};
+    port.q_WB = b.motion.empty() ? upright(b.cos_h[row], b.sin_h[row]) : b.motion[row].q_WB;
+    if (errors_.pos_noise_m > 0.0 || errors_.angle_noise_rad > 0.0 || errors_.axis_noise > 0.0)
+      add_noise(robot.context, b.entity[row], port);
   }
 
  private:
@@ -199,21 +153,18 @@ class PositioningSensor final : public Sensor {
   void add_noise(const DeviceContext& context, std::uint32_t entity, hal::Positioning& port) const noexcept {
     const auto place = draw(context.seed, entity, Stream::PositioningNoise, context.tick, 0);
     const auto turn = draw(context.seed, entity, Stream::PositioningNoise, context.tick, 1);
-    const auto symmetric = [](std::uint32_t bits) { return 2.0 * to_unit(bits) - 1.0; };
-    for (std::size_t k = 0; k < 3; ++k) port.p_WB[k] += errors_.pos_noise_m * symmetric(place[k]);
+    for (std::size_t k = 0; k < 3; ++k) port.p_WB[k] += errors_.pos_noise_m * to_symmetric(place[k]);
     if (errors_.angle_noise_rad == 0.0 && errors_.axis_noise == 0.0) return;
     auto& q = port.q_WB;
     const double s = std::sqrt(q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    const double angle = 2.0 * std::atan2(s, q[0]) + errors_.angle_noise_rad * symmetric(place[3]);
+    const double angle = 2.0 * std::atan2(s, q[0]) + errors_.angle_noise_rad * to_symmetric(place[3]);
     std::array<double, 3> axis{0.0, 0.0, 1.0};  // of a body that is not turned: the vertical
     if (s > 1e-12) axis = {q[1] / s, q[2] / s, q[3] / s};
-    for (std::size_t k = 0; k < 3; ++k) axis[k] += errors_.axis_noise * symmetric(turn[k]);
+    for (std::size_t k = 0; k < 3; ++k) axis[k] += errors_.axis_noise * to_symmetric(turn[k]);
     const double length = std::sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);  // at least 0.13
     const double part = std::sin(0.5 * angle) / length;
     q = {std::cos(0.5 * angle), part * axis[0], part * axis[1], part * axis[2]};
   }
-
-  PlaceErrors errors_;
 };
 
 }  // namespace

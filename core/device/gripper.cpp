@@ -2,6 +2,7 @@
 // robots' actuators and the physics, for all grippers together.
 #include "hal/device/gripper.hpp"
 
+#include "core/device/each_robot.hpp"
 #include "core/device/types.hpp"
 #include "core/space/mechanisms.hpp"
 
@@ -10,89 +11,45 @@ namespace {
 
 // --- actuator ---
 
-struct Gripping {
-  double failure_prob = 0.0;
-  static Gripping noisy() { return {.failure_prob = 100 * 1e-3}; }
-  void describe(hal::ParamVisitor& v) {
-    v.number("failure_prob", failure_prob, hal::unit::none, {0.0, 1.0},
-             "Probability, in each tick, that open claws fail to hold what is before them.");
-  }
-};
+constexpr ErrorText kGripping{"failure_prob",
+                              100 * 1e-3,
+                              hal::unit::none,
+                              {0.0, 1.0},
+                              "Probability, in each tick, that open claws fail to hold what is before them."};
+using Gripping = OneError<kGripping>;
 
-class GripperActuator final : public Actuator {
+class GripperActuator final : public EachActuator<GripperActuator, hal::GripperDrive, Gripping, GripState> {
  public:
-  using Port = hal::GripperDrive;
   using Part = hal::GripperPart;
-  using Errors = Gripping;
-  using Kept = GripState;
+  using EachActuator::EachActuator;
 
-  GripperActuator(const DeviceSetup&, const Errors& errors, const BlockColumns& columns)
-      : failure_prob_(errors.failure_prob), grips_(columns.find<GripState>()) {}
-
-  void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
-    const auto* drives = static_cast<const hal::GripperDrive*>(ports);
-    for (std::size_t i = 0; i < context.block.used; ++i) {
-      const std::size_t row = context.block.first_row + i;
-      GripState& grip = grips_[i];
-      const bool able = obeys(context, i);
-      if (!led_from_outside(context, i)) grip.aperture_rad = able ? drives[i].aperture_rad : 0.0;
-      grip.wants = able && drives[i].locks();
-      grip.slips = grip.wants && failure_prob_ > 0.0 && slips(context, stores.bodies.entity[row]);
-    }
+  void obey(const RobotAt& robot, const hal::GripperDrive& drive) const noexcept {
+    GripState& grip = kept_[robot.i];
+    const bool able = obeys(robot.context, robot.i);
+    if (!led_from_outside(robot.context, robot.i)) grip.aperture_rad = able ? drive.aperture_rad : 0.0;
+    grip.wants = able && drive.locks();
+    grip.slips = grip.wants && errors_.amount > 0.0 && to_unit(robot.draw(Stream::GripperSlip)[0]) < errors_.amount;
   }
-
- private:
-  bool slips(const DeviceContext& context, std::uint32_t entity) const noexcept {
-    return to_unit(draw(context.seed, entity, Stream::GripperSlip, context.tick)[0]) < failure_prob_;
-  }
-
-  double failure_prob_;
-  GripState* grips_;
 };
 
 // --- sensor ---
 
-struct ApertureNoise {
-  double noise_range_rad = 0.0;
-  static ApertureNoise noisy() { return {.noise_range_rad = 20 * 1e-3}; }
-  void describe(hal::ParamVisitor& v) {
-    v.number("noise_range", noise_range_rad, hal::unit::rad, hal::kNotNegative,
-             "Uniform noise of +-this on the aperture.");
-  }
-};
+constexpr ErrorText kApertureNoise{"noise_range", 20 * 1e-3, hal::unit::rad, hal::kNotNegative,
+                                   "Uniform noise of +-this on the aperture."};
+using ApertureNoise = OneError<kApertureNoise>;
 
-class GripperSensor final : public Sensor {
+class GripperSensor final : public EachSensor<GripperSensor, hal::Gripper, ApertureNoise, GripState> {
  public:
-  using Port = hal::Gripper;
   using Part = hal::GripperPart;
-  using Errors = ApertureNoise;
-  using Kept = GripState;
+  using EachSensor::EachSensor;
 
-  GripperSensor(const DeviceSetup&, const Errors& errors, const BlockColumns& columns)
-      : noise_rad_(errors.noise_range_rad), grips_(columns.find<GripState>()) {}
-
-  void sense(const DeviceContext& context, void* ports) noexcept override {
-    auto* grippers = static_cast<hal::Gripper*>(ports);
-    const Bodies& b = context.stores.bodies;
-    for (std::size_t i = 0; i < context.block.used; ++i) {
-      const std::size_t row = context.block.first_row + i;
-      const GripState& grip = grips_[i];
-      hal::Gripper& port = grippers[i];
-      stamp(context, port);
-      double aperture_rad = grip.aperture_rad;
-      if (noise_rad_ > 0.0) {
-        const auto bits = draw(context.seed, b.entity[row], Stream::GripperNoise, context.tick);
-        aperture_rad += noise_rad_ * to_symmetric(bits[0]);
-      }
-      port.aperture_rad = static_cast<float>(aperture_rad);
-      port.holding = grip.holding();
-      port.busy = false;
-    }
+  void read(const RobotAt& robot, hal::Gripper& port) const noexcept {
+    double aperture_rad = kept_[robot.i].aperture_rad;
+    if (errors_.amount > 0.0) aperture_rad += errors_.amount * to_symmetric(robot.draw(Stream::GripperNoise)[0]);
+    port.aperture_rad = static_cast<float>(aperture_rad);
+    port.holding = kept_[robot.i].holding();
+    port.busy = false;
   }
-
- private:
-  double noise_rad_;
-  const GripState* grips_;
 };
 
 }  // namespace

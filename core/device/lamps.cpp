@@ -59,14 +59,24 @@ class Shine {
   std::uint16_t medium_;
 };
 
-/// What lamps of all kinds are to the world.
+/// What lamps of all kinds are to the world. `Self` has `light(context, row, port, shown)`.
+template <class Self, class OfPort>
 class LampActuator : public Actuator {
  public:
+  using Port = OfPort;
   using Errors = LampErrors;
   static constexpr std::string_view kMedium = LedMedium::kKind;
 
   LampActuator(const DeviceSetup& setup, const Errors& errors, const BlockColumns&) : shine_(setup, errors) {}
   static void prepare(BlockFactory<Actuator>& factory, const DeviceSetup&, const Errors&) { factory.publishes = true; }
+
+  void act(const DeviceContext& context, SpaceStores& /*stores*/, const void* ports) noexcept final {
+    ShownLeds* const shining = shine_.publish(context.block);
+    if (shining == nullptr) return;
+    for (std::size_t i = 0; i < context.block.used; ++i)
+      static_cast<const Self&>(*this).light(context, context.block.first_row + i, static_cast<const Port*>(ports)[i],
+                                            shining[i]);
+  }
 
  protected:
   Shine shine_;
@@ -74,30 +84,23 @@ class LampActuator : public Actuator {
 
 /// The ring, or the upper of two.
 template <class OfPort>
-class RingLamps final : public LampActuator {
+class RingLamps final : public LampActuator<RingLamps<OfPort>, OfPort> {
+  using Base = LampActuator<RingLamps<OfPort>, OfPort>;
   static constexpr bool kUpper = std::is_same_v<OfPort, hal::UpperRingLeds>;
 
  public:
-  using Port = OfPort;
   using Part = std::conditional_t<kUpper, hal::UpperLedsPart, hal::LedsPart>;
 
-  RingLamps(const DeviceSetup& setup, const Errors& errors, const BlockColumns& columns)
-      : LampActuator(setup, errors, columns),
+  RingLamps(const DeviceSetup& setup, const LampErrors& errors, const BlockColumns& columns)
+      : Base(setup, errors, columns),
         count_(std::min(setup.kind.part<Part>()->mounts.size(), hal::RingLeds::kCapacity)) {}
 
-  void act(const DeviceContext& context, SpaceStores& /*stores*/, const void* ports) noexcept override {
-    ShownLeds* const shining = shine_.publish(context.block);
-    if (shining == nullptr) return;
-    const auto* leds = static_cast<const Port*>(ports);
-    for (std::size_t i = 0; i < context.block.used; ++i) {
-      const std::size_t row = context.block.first_row + i;
-      ShownLeds& shown = shining[i];
-      for (std::size_t k = 0; k < count_; ++k) {
-        const std::size_t lamp = kUpper ? ShownLeds::kUpper + k : k;
-        shown.show(lamp, shine_(context, row, lamp, leds[i].color(k)));
-      }
-      (kUpper ? shown.upper_medium : shown.ring_medium) = shine_.medium();
+  void light(const DeviceContext& context, std::size_t row, const OfPort& leds, ShownLeds& shown) const noexcept {
+    for (std::size_t k = 0; k < count_; ++k) {
+      const std::size_t lamp = kUpper ? ShownLeds::kUpper + k : k;
+      shown.show(lamp, this->shine_(context, row, lamp, leds.color(k)));
     }
+    (kUpper ? shown.upper_medium : shown.ring_medium) = this->shine_.medium();
   }
 
  private:
@@ -105,47 +108,32 @@ class RingLamps final : public LampActuator {
 };
 
 /// The light beside a camera.
-class CameraLamp final : public LampActuator {
+class CameraLamp final : public LampActuator<CameraLamp, hal::CameraLed> {
  public:
-  using Port = hal::CameraLed;
   using Part = hal::CameraLedPart;
   using LampActuator::LampActuator;
 
-  void act(const DeviceContext& context, SpaceStores& /*stores*/, const void* ports) noexcept override {
-    ShownLeds* const shining = shine_.publish(context.block);
-    if (shining == nullptr) return;
-    const auto* lamps = static_cast<const hal::CameraLed*>(ports);
-    for (std::size_t i = 0; i < context.block.used; ++i) {
-      const std::size_t row = context.block.first_row + i;
-      ShownLeds& shown = shining[i];
-      const hal::Rgb told{lamps[i].rgb[0], lamps[i].rgb[1], lamps[i].rgb[2]};
-      shown.show(ShownLeds::kCamera, shine_(context, row, ShownLeds::kCamera, told));
-      shown.camera_medium = shine_.medium();
-    }
+  void light(const DeviceContext& context, std::size_t row, const hal::CameraLed& lamp,
+             ShownLeds& shown) const noexcept {
+    const hal::Rgb told{lamp.rgb[0], lamp.rgb[1], lamp.rgb[2]};
+    shown.show(ShownLeds::kCamera, shine_(context, row, ShownLeds::kCamera, told));
+    shown.camera_medium = shine_.medium();
   }
 };
 
 /// One of the lamps in the body and at the front.
 template <class OfPort, class OfPart>
-class BodyLamp final : public LampActuator {
+class BodyLamp final : public LampActuator<BodyLamp<OfPort, OfPart>, OfPort> {
  public:
-  using Port = OfPort;
   using Part = OfPart;
-  using LampActuator::LampActuator;
+  using LampActuator<BodyLamp<OfPort, OfPart>, OfPort>::LampActuator;
 
-  void act(const DeviceContext& context, SpaceStores& /*stores*/, const void* ports) noexcept override {
-    ShownLeds* const shining = shine_.publish(context.block);
-    if (shining == nullptr) return;
-    constexpr bool kIsFront = std::is_same_v<Port, hal::FrontLed>;
+  void light(const DeviceContext& context, std::size_t row, const OfPort& lamp, ShownLeds& shown) const noexcept {
+    constexpr bool kIsFront = std::is_same_v<OfPort, hal::FrontLed>;
     constexpr std::size_t kLamp = kIsFront ? ShownLeds::kFront : ShownLeds::kBody;
-    const auto* lamps = static_cast<const Port*>(ports);
-    for (std::size_t i = 0; i < context.block.used; ++i) {
-      const std::size_t row = context.block.first_row + i;
-      ShownLeds& shown = shining[i];
-      const hal::Rgb told = !lamps[i].on ? hal::kBlack : kIsFront ? hal::kRed : hal::kGreen;
-      shown.show(kLamp, shine_(context, row, kLamp, told));
-      (kIsFront ? shown.front_medium : shown.body_medium) = shine_.medium();
-    }
+    const hal::Rgb told = !lamp.on ? hal::kBlack : kIsFront ? hal::kRed : hal::kGreen;
+    shown.show(kLamp, this->shine_(context, row, kLamp, told));
+    (kIsFront ? shown.front_medium : shown.body_medium) = this->shine_.medium();
   }
 };
 

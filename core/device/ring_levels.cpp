@@ -1,4 +1,5 @@
 // Ambient light, ground reflectance, cliffs: one level a sensor of the ring.
+#include "core/device/each_robot.hpp"
 #include "core/device/field_ring.hpp"
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
@@ -9,13 +10,8 @@ namespace tandem::core {
 namespace {
 
 /// Uniform noise on levels in [0, 1].
-struct LevelNoise {
-  double noise_level = 0.0;
-  static LevelNoise noisy() { return {.noise_level = 20 * 1e-3}; }
-  void describe(hal::ParamVisitor& v) {
-    v.number("noise_level", noise_level, hal::unit::none, {0.0, 1.0}, "Uniform noise of +-level.");
-  }
-};
+constexpr ErrorText kLevelNoise{"noise_level", 20 * 1e-3, hal::unit::none, {0.0, 1.0}, "Uniform noise of +-level."};
+using LevelNoise = OneError<kLevelNoise>;
 /// ARGoS' switch for its view is accepted too.
 struct LightNoise : LevelNoise {
   bool show_rays = false;
@@ -49,7 +45,7 @@ class LevelSensor final : public Sensor {
 
   LevelSensor(const DeviceSetup& setup, const Errors& errors, const BlockColumns&)
       : ring_(*setup.fields->find(kField), setup.kind.part<Part>()->mounts),
-        noise_(static_cast<float>(errors.noise_level)) {}
+        noise_(static_cast<float>(errors.amount)) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     ring_.sample(context, [&](std::size_t i, const double* values) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/device/each_robot.hpp"
 #include "core/device/far_rays.hpp"
 #include "core/device/types.hpp"
 #include "core/space/sight.hpp"
@@ -10,14 +11,9 @@
 namespace tandem::core {
 namespace {
 
-struct DistanceNoise {
-  double noise_level = 0.0;
-  static DistanceNoise noisy() { return {.noise_level = 40 * 1e-3}; }
-  void describe(hal::ParamVisitor& v) {
-    v.number("noise_level", noise_level, hal::unit::none, {0.0, 1.0},
-             "Standard deviation of the distance, as a part of it.");
-  }
-};
+constexpr ErrorText kDistanceNoise{
+    "noise_level", 40 * 1e-3, hal::unit::none, {0.0, 1.0}, "Standard deviation of the distance, as a part of it."};
+using DistanceNoise = OneError<kDistanceNoise>;
 
 /// Sees bodies, boxes and cylinders at the height of its mount, in a fan as wide as its cone: 23 rays, of 25 degrees
 /// 4 cm from one another at 2 m.
@@ -28,7 +24,7 @@ class TimeOfFlightSensor final : public Sensor {
   using Errors = DistanceNoise;
 
   TimeOfFlightSensor(const DeviceSetup& setup, const Errors& errors, const BlockColumns&)
-      : part_(*setup.kind.part<Part>()), noise_(errors.noise_level) {
+      : part_(*setup.kind.part<Part>()), noise_(errors.amount) {
     const Part& part = part_;
     count_ = part.cone_rad > 0.0 ? kRays : 1;
     rays_.aim(static_cast<std::size_t>(count_), part.mount.z_m);

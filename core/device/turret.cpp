@@ -1,6 +1,7 @@
 // Turrets: the actuator that turns them, and the encoder that tells where they look.
 #include "hal/device/turret.hpp"
 
+#include "core/device/each_robot.hpp"
 #include "core/device/types.hpp"
 #include "core/space/mechanisms.hpp"
 #include "hal/angle.hpp"
@@ -10,47 +11,36 @@ namespace {
 
 // --- actuator ---
 
-struct TurretErrors {
-  double noise_std_dev = 0.0;
-  static TurretErrors noisy() { return {.noise_std_dev = 50 * 1e-3}; }
-  void describe(hal::ParamVisitor& v) {
-    v.number("noise_std_dev", noise_std_dev, hal::unit::none, {0.0, 1.0},
-             "Standard deviation of the turn rate's relative error, drawn every tick.");
-  }
-};
+constexpr ErrorText kTurretErrors{"noise_std_dev",
+                                  50 * 1e-3,
+                                  hal::unit::none,
+                                  {0.0, 1.0},
+                                  "Standard deviation of the turn rate's relative error, drawn every tick."};
+using TurretErrors = OneError<kTurretErrors>;
 
 /// Turns what carries no load at once; a turret that holds something is turned by the physics engine.
-class TurretActuator final : public Actuator {
+class TurretActuator final : public EachActuator<TurretActuator, hal::TurretDrive, TurretErrors, TurretState> {
  public:
-  using Port = hal::TurretDrive;
   using Part = hal::TurretPart;
-  using Errors = TurretErrors;
-  using Kept = TurretState;
 
   TurretActuator(const DeviceSetup& setup, const Errors& errors, const BlockColumns& columns)
-      : fastest_rad_s_(setup.kind.part<Part>()->turn_rad_s),
-        noise_(errors.noise_std_dev),
-        turrets_(columns.find<TurretState>()),
+      : EachActuator(setup, errors, columns),
+        fastest_rad_s_(setup.kind.part<Part>()->turn_rad_s),
         grips_(columns.find<GripState>()) {}
 
-  void act(const DeviceContext& context, SpaceStores& /*stores*/, const void* ports) noexcept override {
-    const auto* drives = static_cast<const hal::TurretDrive*>(ports);
-    for (std::size_t i = 0; i < context.block.used; ++i) {
-      if (led_from_outside(context, i)) continue;
-      command(context, i, drives[i], turrets_[i]);
-      if (grips_ == nullptr || !grips_[i].holding()) turn(turrets_[i], context.tick_s);
-    }
+  void obey(const RobotAt& robot, const hal::TurretDrive& drive) const noexcept {
+    if (led_from_outside(robot.context, robot.i)) return;
+    command(robot, drive, kept_[robot.i]);
+    if (grips_ == nullptr || !grips_[robot.i].holding()) turn(kept_[robot.i], robot.context.tick_s);
   }
 
  private:
-  void command(const DeviceContext& context, std::size_t i, const hal::TurretDrive& drive,
-               TurretState& turret) const noexcept {
-    turret.mode = obeys(context, i) ? drive.mode : hal::TurretMode::Off;
+  void command(const RobotAt& robot, const hal::TurretDrive& drive, TurretState& turret) const noexcept {
+    turret.mode = obeys(robot.context, robot.i) ? drive.mode : hal::TurretMode::Off;
     turret.target = turret.mode == hal::TurretMode::Position ? drive.angle_rad : drive.speed_rad_s;
-    if (noise_ == 0.0 || turret.mode != hal::TurretMode::Speed) return;
-    const std::uint32_t entity = context.stores.bodies.entity[context.block.first_row + i];
-    const auto bits = draw(context.seed, entity, Stream::TurretNoise, context.tick);
-    turret.target *= 1.0 + noise_ * to_normal(bits[0], bits[1])[0];
+    if (errors_.amount == 0.0 || turret.mode != hal::TurretMode::Speed) return;
+    const auto bits = robot.draw(Stream::TurretNoise);
+    turret.target *= 1.0 + errors_.amount * to_normal(bits[0], bits[1])[0];
   }
   void turn(TurretState& turret, double tick_s) const noexcept {
     double step_rad = 0.0;
@@ -64,50 +54,27 @@ class TurretActuator final : public Actuator {
   }
 
   double fastest_rad_s_;
-  double noise_;
-  TurretState* turrets_;
   const GripState* grips_;  // null: they have no grippers
 };
 
 // --- encoder ---
 
-struct AngleNoise {
-  double noise_range_rad = 0.0;
-  static AngleNoise noisy() { return {.noise_range_rad = 10 * 1e-3}; }
-  void describe(hal::ParamVisitor& v) {
-    v.number("noise_range", noise_range_rad, hal::unit::rad, hal::kNotNegative,
-             "Uniform noise of +-this on the angle.");
-  }
-};
+constexpr ErrorText kAngleNoise{"noise_range", 10 * 1e-3, hal::unit::rad, hal::kNotNegative,
+                                "Uniform noise of +-this on the angle."};
+using AngleNoise = OneError<kAngleNoise>;
 
-class TurretEncoderSensor final : public Sensor {
+class TurretEncoderSensor final : public EachSensor<TurretEncoderSensor, hal::TurretEncoder, AngleNoise, TurretState> {
  public:
-  using Port = hal::TurretEncoder;
   using Part = hal::TurretPart;
-  using Errors = AngleNoise;
-  using Kept = TurretState;
+  using EachSensor::EachSensor;
 
-  TurretEncoderSensor(const DeviceSetup&, const Errors& errors, const BlockColumns& columns)
-      : noise_rad_(errors.noise_range_rad), turrets_(columns.find<TurretState>()) {}
-
-  void sense(const DeviceContext& context, void* ports) noexcept override {
-    auto* encoders = static_cast<hal::TurretEncoder*>(ports);
-    const Bodies& b = context.stores.bodies;
-    for (std::size_t i = 0; i < context.block.used; ++i) {
-      const std::size_t row = context.block.first_row + i;
-      hal::TurretEncoder& port = encoders[i];
-      stamp(context, port);
-      port.angle_rad = turrets_[i].angle_rad;
-      port.speed_rad_s = static_cast<float>(turrets_[i].speed_rad_s);
-      if (noise_rad_ == 0.0) continue;
-      const auto bits = draw(context.seed, b.entity[row], Stream::TurretEncoderNoise, context.tick);
-      port.angle_rad = hal::wrapped(port.angle_rad + noise_rad_ * to_symmetric(bits[0]));
-    }
+  void read(const RobotAt& robot, hal::TurretEncoder& port) const noexcept {
+    port.angle_rad = kept_[robot.i].angle_rad;
+    port.speed_rad_s = static_cast<float>(kept_[robot.i].speed_rad_s);
+    if (errors_.amount == 0.0) return;
+    const auto bits = robot.draw(Stream::TurretEncoderNoise);
+    port.angle_rad = hal::wrapped(port.angle_rad + errors_.amount * to_symmetric(bits[0]));
   }
-
- private:
-  double noise_rad_;
-  const TurretState* turrets_;
 };
 
 }  // namespace

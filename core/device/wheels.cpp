@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/device/each_robot.hpp"
 #include "core/device/fitted_drive.hpp"
 #include "core/device/types.hpp"
 #include "core/random/random.hpp"
@@ -250,34 +251,27 @@ struct EncoderDrift {
   }
 };
 
-class EncoderSensor final : public Sensor {
+class EncoderSensor final : public EachSensor<EncoderSensor, hal::WheelEncoders, EncoderErrors> {
  public:
-  using Port = hal::WheelEncoders;
   using Part = hal::DifferentialDrive;
-  using Errors = EncoderErrors;
   static void prepare(BlockFactory<Sensor>& factory, const DeviceSetup&, const Errors& errors) {
     if (errors.dist_noise_m > 0.0) factory.columns = {keeps<EncoderDrift>()};
   }
 
-  EncoderSensor(const DeviceSetup&, const Errors& errors, const BlockColumns& columns)
-      : errors_(errors), drifts_(columns.find<EncoderDrift>()), hidden_rolls_(columns.find<HiddenRoll>()) {}
+  EncoderSensor(const DeviceSetup& setup, const Errors& errors, const BlockColumns& columns)
+      : EachSensor(setup, errors, columns),
+        drifts_(columns.find<EncoderDrift>()),
+        hidden_rolls_(columns.find<HiddenRoll>()) {}
 
-  void sense(const DeviceContext& context, void* ports) noexcept override {
-    auto* encoders = static_cast<hal::WheelEncoders*>(ports);
-    const Bodies& b = context.stores.bodies;
-    const bool noisy = errors_.vel_noise_m_s > 0.0 || errors_.dist_noise_m > 0.0;
-    for (std::size_t i = 0; i < context.block.used; ++i) {
-      const std::size_t row = context.block.first_row + i;
-      hal::WheelEncoders& port = encoders[i];
-      port.taken_ns = context.now_ns;
-      port.validity = hal::Validity::Fresh;
-      port.left_m = b.left_m[row];
-      port.right_m = b.right_m[row];
-      port.left_m_s = static_cast<float>(b.left_m_s[row]);
-      port.right_m_s = static_cast<float>(b.right_m_s[row]);
-      if (hidden_rolls_ != nullptr) hide(hidden_rolls_[i], port);
-      if (noisy) add_noise(context, b.entity[row], i, port);
-    }
+  void read(const RobotAt& robot, hal::WheelEncoders& port) const noexcept {
+    const Bodies& b = robot.bodies();
+    const std::size_t row = robot.row();
+    port.left_m = b.left_m[row];
+    port.right_m = b.right_m[row];
+    port.left_m_s = static_cast<float>(b.left_m_s[row]);
+    port.right_m_s = static_cast<float>(b.right_m_s[row]);
+    if (hidden_rolls_ != nullptr) hide(hidden_rolls_[robot.i], port);
+    if (errors_.vel_noise_m_s > 0.0 || errors_.dist_noise_m > 0.0) add_noise(robot, port);
   }
 
  private:
@@ -288,34 +282,28 @@ class EncoderSensor final : public Sensor {
     port.right_m_s -= static_cast<float>(hidden.right_m_s);
   }
 
-  void add_noise(const DeviceContext& context, std::uint32_t entity, std::size_t i, hal::WheelEncoders& port) noexcept {
-    const auto bits = draw(context.seed, entity, Stream::EncoderNoise, context.tick);
-    const auto symmetric = [&bits](std::size_t k) { return 2.0 * to_unit(bits[k]) - 1.0; };
-    port.left_m_s += static_cast<float>(errors_.vel_noise_m_s * symmetric(0));
-    port.right_m_s += static_cast<float>(errors_.vel_noise_m_s * symmetric(1));
+  void add_noise(const RobotAt& robot, hal::WheelEncoders& port) const noexcept {
+    const auto bits = robot.draw(Stream::EncoderNoise);
+    port.left_m_s += static_cast<float>(errors_.vel_noise_m_s * to_symmetric(bits[0]));
+    port.right_m_s += static_cast<float>(errors_.vel_noise_m_s * to_symmetric(bits[1]));
     if (drifts_ == nullptr) return;
-    EncoderDrift& drift = drifts_[i];
-    drift.left_m += errors_.dist_noise_m * symmetric(2);
-    drift.right_m += errors_.dist_noise_m * symmetric(3);
+    EncoderDrift& drift = drifts_[robot.i];
+    drift.left_m += errors_.dist_noise_m * to_symmetric(bits[2]);
+    drift.right_m += errors_.dist_noise_m * to_symmetric(bits[3]);
     port.left_m += drift.left_m;
     port.right_m += drift.right_m;
   }
 
-  EncoderErrors errors_;
   EncoderDrift* drifts_;            // null: their distances are exact
   const HiddenRoll* hidden_rolls_;  // null: their wheels roll as they count
 };
 
 // --- odometry ---
 
-struct OdometryErrors {
-  double dist_noise_m = 0.0;
-  static OdometryErrors noisy() { return {.dist_noise_m = 100 * 1e-6}; }
-  void describe(hal::ParamVisitor& v) {
-    v.number("dist_noise_range", dist_noise_m, hal::unit::cm, hal::kNotNegative,
-             "Uniform noise of +-this on the distance that each wheel rolled in a tick; it adds up.");
-  }
-};
+constexpr ErrorText kOdometryErrors{
+    "dist_noise_range", 100 * 1e-6, hal::unit::cm, hal::kNotNegative,
+    "Uniform noise of +-this on the distance that each wheel rolled in a tick; it adds up."};
+using OdometryErrors = OneError<kOdometryErrors>;
 
 /// Where odometry believes the robot to be.
 struct Reckoned {
@@ -336,47 +324,36 @@ struct Reckoned {
 
 /// Adds up what the encoders saw in each tick as an arc [Siegwart et al. 2011, Introduction to Autonomous Mobile
 /// Robots, section 5.2.4].
-class OdometrySensor final : public Sensor {
+class OdometrySensor final : public EachSensor<OdometrySensor, hal::Odometry, OdometryErrors, Reckoned> {
  public:
-  using Port = hal::Odometry;
   using Part = hal::DifferentialDrive;
-  using Errors = OdometryErrors;
-  using Kept = Reckoned;
 
   OdometrySensor(const DeviceSetup& setup, const Errors& errors, const BlockColumns& columns)
-      : wheel_base_m_(setup.kind.drive()->wheel_base_m),
-        noise_m_(errors.dist_noise_m),
-        reckoned_(columns.find<Reckoned>()),
+      : EachSensor(setup, errors, columns),
+        wheel_base_m_(setup.kind.drive()->wheel_base_m),
         hidden_rolls_(columns.find<HiddenRoll>()) {}
 
-  void sense(const DeviceContext& context, void* ports) noexcept override {
-    auto* places = static_cast<hal::Odometry*>(ports);
-    const Bodies& b = context.stores.bodies;
-    for (std::size_t i = 0; i < context.block.used; ++i) {
-      const std::size_t row = context.block.first_row + i;
-      Reckoned& r = reckoned_[i];
-      double left_m = b.left_m[row];
-      double right_m = b.right_m[row];
-      if (hidden_rolls_ != nullptr) {
-        left_m -= hidden_rolls_[i].left_m;
-        right_m -= hidden_rolls_[i].right_m;
-      }
-      double rolled_left_m = left_m - r.left_m;
-      double rolled_right_m = right_m - r.right_m;
-      r.left_m = left_m;
-      r.right_m = right_m;
-      if (noise_m_ > 0.0) {
-        const auto bits = draw(context.seed, b.entity[row], Stream::OdometryNoise, context.tick);
-        rolled_left_m += noise_m_ * to_symmetric(bits[0]);
-        rolled_right_m += noise_m_ * to_symmetric(bits[1]);
-      }
-      go(r, 0.5 * (rolled_left_m + rolled_right_m), (rolled_right_m - rolled_left_m) / wheel_base_m_);
-      hal::Odometry& port = places[i];
-      stamp(context, port);
-      port.x_m = r.x_m;
-      port.y_m = r.y_m;
-      port.heading_rad = r.heading_rad;
+  void read(const RobotAt& robot, hal::Odometry& port) const noexcept {
+    Reckoned& r = kept_[robot.i];
+    double left_m = robot.bodies().left_m[robot.row()];
+    double right_m = robot.bodies().right_m[robot.row()];
+    if (hidden_rolls_ != nullptr) {
+      left_m -= hidden_rolls_[robot.i].left_m;
+      right_m -= hidden_rolls_[robot.i].right_m;
     }
+    double rolled_left_m = left_m - r.left_m;
+    double rolled_right_m = right_m - r.right_m;
+    r.left_m = left_m;
+    r.right_m = right_m;
+    if (errors_.amount > 0.0) {
+      const auto bits = robot.draw(Stream::OdometryNoise);
+      rolled_left_m += errors_.amount * to_symmetric(bits[0]);
+      rolled_right_m += errors_.amount * to_symmetric(bits[1]);
+    }
+    go(r, 0.5 * (rolled_left_m + rolled_right_m), (rolled_right_m - rolled_left_m) / wheel_base_m_);
+    port.x_m = r.x_m;
+    port.y_m = r.y_m;
+    port.heading_rad = r.heading_rad;
   }
 
  private:
@@ -390,8 +367,6 @@ class OdometrySensor final : public Sensor {
   }
 
   double wheel_base_m_;
-  double noise_m_;
-  Reckoned* reckoned_;
   const HiddenRoll* hidden_rolls_;  // null: their wheels roll as they count
 };
 
