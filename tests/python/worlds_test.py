@@ -8,6 +8,11 @@ import unittest
 
 import numpy as np
 
+try:
+    import h5py
+except ImportError:  # a reader of HDF5 that is none of ours
+    h5py = None
+
 import tandem
 from rooms import CONFIGS, DIFFUSION, FOOTBOTS, room
 
@@ -157,6 +162,42 @@ class Worlds(unittest.TestCase):
                 record["poses"]
             with self.assertRaisesRegex(ValueError, "nowhere"):
                 tandem.Record("/nowhere/run.record")
+
+    @unittest.skipUnless(h5py, "no python3-h5py here")
+    def test_have_the_same_tables_in_python_as_in_the_hdf5_file_of_their_record(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path, exported = (os.path.join(folder, name) for name in ("run.record", "run.h5"))
+            world = tandem.World(FOOTBOTS, seed=3, record=path, parameters={"record.ports": "*"})
+            world.step(10)
+            moment = world.snapshot()
+            world.step(5)
+            world.restore(moment)  # the branch of 5 ticks is left
+            world.step(4)
+            world.finish()
+            chosen = {"entities": [world.ids[1]], "first": 2, "last": 11, "every": 3}
+            for options, of_python in ([], {}), (["--entities", world.ids[1], "--from", "2", "--until", "11", "--every", "3"], chosen):
+                subprocess.run([PROGRAM, "export", path, "--hdf5", exported, *options], check=True)
+                with h5py.File(exported) as file:
+                    record = tandem.Record(path)
+                    here = {title.replace(" ", "/"): title for title in record}
+                    groups = {}
+
+                    def note(name, item):
+                        if isinstance(item, h5py.Dataset):
+                            group, field = name.rsplit("/", 1)
+                            groups.setdefault(group, {})[field] = item
+
+                    file.visititems(note)
+                    groups.pop("events")
+                    self.assertLessEqual(set(groups), set(here))
+                    self.assertIn("sensor/proximity", groups)
+                    for group, sets in groups.items():
+                        table = record.table(here[group], **of_python)
+                        self.assertEqual(set(table), set(sets), group)
+                        self.assertEqual(list(table["ids"]), list(sets["ids"].asstr()[:]), group)
+                        for name in set(sets) - {"ids"}:
+                            self.assertEqual(table[name].dtype, sets[name].dtype, f"{group}/{name}")
+                            np.testing.assert_array_equal(table[name], sets[name][:], f"{group}/{name}")
 
     def test_say_where_a_record_cannot_be(self):
         with self.assertRaisesRegex(tandem.ExperimentError, "nowhere"):
