@@ -43,11 +43,13 @@ int add_object(dl_phdr_info* object, std::size_t /*size*/, void* all) {
 }  // namespace
 
 Addresses::Addresses() {
+  constexpr std::uint64_t kLargest = 0x10'0000'0000;  // more is set aside, by a sanitizer say, and given to nobody
   std::ifstream maps("/proc/self/maps");
   Range range{};
   char dash = '-';
-  std::string rest;
-  while (maps >> std::hex >> range.begin >> dash >> range.past && std::getline(maps, rest)) ranges_.push_back(range);
+  std::string permissions, rest;
+  while (maps >> std::hex >> range.begin >> dash >> range.past >> permissions && std::getline(maps, rest))
+    if (permissions.front() == 'r' && range.past - range.begin <= kLargest) ranges_.push_back(range);
 }
 
 bool Addresses::lies_in_memory(std::uint64_t word) const noexcept {

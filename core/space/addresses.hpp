@@ -15,7 +15,8 @@ struct LoadedObject {
 /// The program is the first.
 std::vector<LoadedObject> loaded_objects();
 
-/// The memory that this process has at present [proc(5), /proc/self/maps]: a word that lies in it may be an address.
+/// The memory that this process can read at present [proc(5), /proc/self/maps]: a word that lies in it may be an
+/// address.
 class Addresses {
  public:
   Addresses();
