@@ -375,18 +375,18 @@ void World::Impl::change_hook(std::size_t i) {
   hook_phase = "before_run";
   const hal::PluginCall marked(&name_hook, this, i);
   Problems problems;
-  std::string why;
   const auto what = thrown([&] {
     const std::any kept = hooks[i]->save();
-    why = remake_hook(i, problems);
-    if (has_errors(problems)) why += (why.empty() ? "" : "; ") + errors_of(problems);
-    if (!why.empty()) return;
+    make_hook(i, problems);
+    if (has_errors(problems)) return;
     HookContext context = hook_context();
     hooks[i]->before_run(context);
     if (kept.has_value()) hooks[i]->restore(kept);
   });
-  if (what) why = "threw" + *what;
-  if (!why.empty()) fail("hook '" + hook_names[i] + "' with the changed options" + at_tick() + " " + why);
+  if (what || has_errors(problems)) {
+    fail("hook '" + hook_names[i] + "' with the changed options" + at_tick() + " " +
+         (what ? "threw" + *what : errors_of(problems)));
+  }
 }
 
 // --- robots ---

@@ -12,6 +12,7 @@
 #include "core/sim/engine_factory.hpp"
 #include "core/sim/robot_kit.hpp"
 #include "core/sim/settings.hpp"
+#include "core/sim/thrown.hpp"
 #include "hal/device/flight.hpp"
 #include "hal/device/pan_tilt.hpp"
 #include "hal/device/range_and_bearing.hpp"
@@ -188,18 +189,16 @@ std::shared_ptr<const void> RobotFactory::read_params(const RobotGroup& group, c
                                                       const Scenario& scenario, Problems& problems) const {
   const ControllerConfig& config = scenario.controllers[group.config];
   const Element& params = item.params ? *item.params : config.params;
-  std::string why = "controller '" + config.id + "' threw while it read its parameters";
-  try {
-    const hal::PluginCall call(&name_params, this, group.config);
+  const hal::PluginCall call(&name_params, this, group.config);
+  std::shared_ptr<const void> read;
+  const auto what = thrown([&] {
     ElementReader reader(params, problems);
-    auto read = group.controller->read_params(reader);
+    read = group.controller->read_params(reader);
     reader.finish();
-    return read;
-  } catch (const std::exception& e) {
-    why += std::string(": ") + e.what();
-  } catch (...) {
-  }
-  problems.push_back({scenario_.file, config.line, std::move(why), false});
+  });
+  if (!what) return read;
+  problems.push_back({scenario_.file, config.line,
+                      "controller '" + config.id + "' threw while it read its parameters" + *what, false});
   return nullptr;
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 #include <any>
 #include <atomic>
-#include <exception>
 #include <map>
 #include <memory>
 #include <optional>
@@ -17,6 +16,7 @@
 #include "core/sim/engine_factory.hpp"
 #include "core/sim/region_assigner.hpp"
 #include "core/sim/robot_factory.hpp"
+#include "core/sim/thrown.hpp"
 #include "core/sim/world.hpp"
 #include "core/sim/world_editor.hpp"
 #include "core/space/stores.hpp"
@@ -103,19 +103,6 @@ struct AsStarted {
   std::vector<std::uint64_t> fields;                ///< their marks
   std::vector<std::vector<ControlValue>> controls;  ///< by hook
 };
-
-/// Makes a call into a plug-in. What it threw, behind a colon where that says something; none: nothing.
-template <class Call>
-std::optional<std::string> thrown(Call&& call) {
-  try {
-    call();
-    return std::nullopt;
-  } catch (const std::exception& e) {
-    return std::string(": ") + e.what();
-  } catch (...) {
-    return std::string();
-  }
-}
 
 /// A speed so far beyond what a robot can do that it was written in another unit.
 struct Excess {
@@ -215,7 +202,7 @@ struct World::Impl final : hal::RobotLog::Sink {
   std::unique_ptr<Field> make_field(const FieldType& type, const Scenario& from, Problems& problems) const;
   void make_hooks(Problems& problems);
   void reset_hooks(Problems& problems);
-  std::string remake_hook(std::size_t hook, Problems& problems);
+  void make_hook(std::size_t hook, Problems& problems);
   Scenario completed(const Scenario& changed) const;
   void change_hook(std::size_t hook);
   void size_ledgers();

@@ -216,19 +216,6 @@ void name_hook_made(const void* config, std::size_t /*part*/, std::size_t /*inde
   out << "hook '" << c.label << "' (library '" << c.library << "'), while it was made,";
 }
 
-/// Null when it cannot be made; `why` then says why.
-std::unique_ptr<Hook> make_hook(const HookType& type, const HookConfig& config, Problems& problems, std::string& why) {
-  if (type.make == nullptr) {
-    why = "has no function that makes it; register it with hook_type";
-    return nullptr;
-  }
-  const hal::PluginCall call(&name_hook_made, &config);
-  std::unique_ptr<Hook> hook;
-  const auto what = thrown([&] { hook = type.make(config.options, problems); });
-  if (hook == nullptr) why = what ? "threw while it was made" + *what : "makes nothing";
-  return hook;
-}
-
 /// What is in the arena besides robots.
 Things furnish(const Scenario& scenario, const Placements& placements) {
   Things all;
@@ -392,23 +379,32 @@ void World::Impl::populate(Problems& problems) {
   }
 }
 
+/// Makes a hook in its place. Where it cannot be made, a problem says why, and one that does nothing is there.
+void World::Impl::make_hook(std::size_t i, Problems& problems) {
+  const HookConfig& config = scenario.hooks[i];
+  hooks[i].reset();  // closes its files before the next opens them
+  const HookType& type = *loader->get<HookType>(config.library, config.label).value();
+  std::string why = "has no function that makes it; register it with hook_type";
+  if (type.make != nullptr) {
+    const hal::PluginCall call(&name_hook_made, &config);
+    const auto what = thrown([&] { hooks[i] = type.make(config.options, problems); });
+    if (hooks[i] != nullptr) return;
+    why = what ? "threw while it was made" + *what : "makes nothing";
+  }
+  problems.push_back(
+      {scenario.file, config.line, "hook '" + hook_names[i] + "' (library '" + config.library + "') " + why, false});
+  hooks[i] = std::make_unique<Hook>();
+}
+
 void World::Impl::make_hooks(Problems& problems) {
   for (const HookConfig& config : scenario.hooks) {
     const auto type = loader->get<HookType>(config.library, config.label);
-    if (!type.ok()) {
+    hook_names.emplace_back(type.ok() ? type.value()->name : std::string_view(config.label));
+    hooks.push_back(std::make_unique<Hook>());
+    if (type.ok())
+      make_hook(hooks.size() - 1, problems);
+    else
       problems.push_back({scenario.file, config.line, "loop_functions: " + type.error().message, false});
-      continue;
-    }
-    const HookType* hook = type.value();
-    std::string why;
-    std::unique_ptr<Hook> made = make_hook(*hook, config, problems, why);
-    if (made == nullptr) {
-      problems.push_back({scenario.file, config.line,
-                          "hook '" + std::string(hook->name) + "' (library '" + config.library + "') " + why, false});
-      continue;
-    }
-    hooks.push_back(std::move(made));
-    hook_names.emplace_back(hook->name);
   }
 }
 
@@ -479,24 +475,15 @@ hal::Status World::reset(std::uint64_t seed, const Scenario* changed) {
   return w.state == RunState::Failed ? hal::Status(hal::Error{w.failure}) : hal::Status{};
 }
 
-/// Says what went wrong, or nothing.
-std::string World::Impl::remake_hook(std::size_t i, Problems& problems) {
-  const auto type = loader->get<HookType>(scenario.hooks[i].library, scenario.hooks[i].label);
-  hooks[i].reset();  // closes its files before the next opens them
-  std::string why;
-  std::unique_ptr<Hook> made = make_hook(*type.value(), scenario.hooks[i], problems, why);
-  hooks[i] = made != nullptr ? std::move(made) : std::make_unique<Hook>();  // which does nothing, in its place
-  return why;
-}
-
 void World::Impl::reset_hooks(Problems& problems) {
   const bool make_anew = std::exchange(new_settings, false);
   for (std::size_t i = 0; i < hooks.size(); ++i) {
     bool at_start = false;
-    std::string why = asked(i, "reset", [&](Hook& hook) { at_start = !make_anew && hook.reset(seed); });
-    if (at_start) continue;
-    if (why.empty() && !(why = remake_hook(i, problems)).empty()) why = "hook '" + hook_names[i] + "' " + why;
-    if (!why.empty()) problems.push_back({scenario.file, scenario.hooks[i].line, why, false});
+    const std::string why = asked(i, "reset", [&](Hook& hook) { at_start = !make_anew && hook.reset(seed); });
+    if (!why.empty())
+      problems.push_back({scenario.file, scenario.hooks[i].line, why, false});
+    else if (!at_start)
+      make_hook(i, problems);
   }
 }
 
