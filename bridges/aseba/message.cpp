@@ -96,60 +96,7 @@ constexpr auto make_decoders(std::variant<UserEvent, M...>*) noexcept {
 }
 constexpr std::array<Decoder, 3 * kRow> kDecoders = make_decoders(static_cast<Message*>(nullptr));
 
-struct NameRow {
-  Type type;
-  std::string_view name;
-};
-constexpr NameRow kNames[] = {
-    {Type::BootloaderReset, "BOOTLOADER_RESET"},
-    {Type::BootloaderReadPage, "BOOTLOADER_READ_PAGE"},
-    {Type::BootloaderWritePage, "BOOTLOADER_WRITE_PAGE"},
-    {Type::BootloaderPageDataWrite, "BOOTLOADER_PAGE_DATA_WRITE"},
-    {Type::BootloaderDescription, "BOOTLOADER_DESCRIPTION"},
-    {Type::BootloaderPageDataRead, "BOOTLOADER_PAGE_DATA_READ"},
-    {Type::BootloaderAck, "BOOTLOADER_ACK"},
-    {Type::Description, "DESCRIPTION"},
-    {Type::NamedVariable, "NAMED_VARIABLE_DESCRIPTION"},
-    {Type::LocalEvent, "LOCAL_EVENT_DESCRIPTION"},
-    {Type::NativeFunction, "NATIVE_FUNCTION_DESCRIPTION"},
-    {Type::Disconnected, "DISCONNECTED"},
-    {Type::Variables, "VARIABLES"},
-    {Type::OutOfBounds, "ARRAY_ACCESS_OUT_OF_BOUNDS"},
-    {Type::DivisionByZero, "DIVISION_BY_ZERO"},
-    {Type::ExecutionKilled, "EVENT_EXECUTION_KILLED"},
-    {Type::NodeError, "NODE_SPECIFIC_ERROR"},
-    {Type::ExecutionState, "EXECUTION_STATE_CHANGED"},
-    {Type::BreakpointResult, "BREAKPOINT_SET_RESULT"},
-    {Type::NodePresent, "NODE_PRESENT"},
-    {Type::GetDescription, "GET_DESCRIPTION"},
-    {Type::SetBytecode, "SET_BYTECODE"},
-    {Type::Reset, "RESET"},
-    {Type::Run, "RUN"},
-    {Type::Pause, "PAUSE"},
-    {Type::Step, "STEP"},
-    {Type::Stop, "STOP"},
-    {Type::GetExecutionState, "GET_EXECUTION_STATE"},
-    {Type::BreakpointSet, "BREAKPOINT_SET"},
-    {Type::BreakpointClear, "BREAKPOINT_CLEAR"},
-    {Type::BreakpointClearAll, "BREAKPOINT_CLEAR_ALL"},
-    {Type::GetVariables, "GET_VARIABLES"},
-    {Type::SetVariables, "SET_VARIABLES"},
-    {Type::WriteBytecode, "WRITE_BYTECODE"},
-    {Type::Reboot, "REBOOT"},
-    {Type::SuspendToRam, "SUSPEND_TO_RAM"},
-    {Type::GetNodeDescription, "GET_NODE_DESCRIPTION"},
-    {Type::ListNodes, "LIST_NODES"},
-};
-
 }  // namespace
-
-std::string_view type_name(std::uint16_t type) noexcept {
-  if (type < kFirstBootloader) return "user event";
-  for (const NameRow& row : kNames) {
-    if (static_cast<std::uint16_t>(row.type) == type) return row.name;
-  }
-  return "unknown";
-}
 
 Decoded decode(std::uint16_t type, std::span<const std::uint8_t> payload, Message& message) noexcept {
   if (type < kFirstBootloader) {

@@ -61,9 +61,6 @@ inline constexpr std::uint16_t kOldVersion = 4;  ///< the oldest that it underst
 inline constexpr std::size_t kMostRead = 257;    ///< words in one Variables
 inline constexpr std::size_t kMostWrite = 256;   ///< words in one SetVariables
 
-/// "SET_VARIABLES", "user event", "unknown".
-std::string_view type_name(std::uint16_t type) noexcept;
-
 /// Messages that are nothing but the node they are for.
 template <Type T>
 struct ToNode {

@@ -176,7 +176,7 @@ void Network::watch_carrier(hal::TimeNs now) noexcept {
 
 /// Asks who is there: all, and those who are awaited and silent one by one.
 void Network::ask_round(hal::TimeNs now) noexcept {
-  if (!transmit(ListNodes{kVersion})) return;  // again with the next poll
+  if (!send(ListNodes{kVersion})) return;  // again with the next poll
   ++statistics_.rounds;
   round_ns_ = now;
   bool anybody = false;
@@ -189,7 +189,7 @@ void Network::ask_round(hal::TimeNs now) noexcept {
     const bool answers_list = node.version >= kVersion && node.state != NodeState::Lost;
     if (!awaited || answers_list || row.read.active) continue;
     if (now - node.heard_ns < timing_.ping_ns && node.heard_ns != 0) continue;
-    row.pinged = transmit(GetVariables{node.id, 0, 1});
+    row.pinged = send(GetVariables{node.id, 0, 1});
   }
   // Nodes of old answer nothing else. While nobody is there, they are called in every other round.
   if (!anybody && !asked_all_) {
@@ -197,12 +197,6 @@ void Network::ask_round(hal::TimeNs now) noexcept {
   } else if (!anybody) {
     asked_all_ = false;
   }
-}
-
-bool Network::transmit(const Message& message) noexcept {
-  if (send(message)) return true;
-  ++statistics_.not_sent;
-  return false;
 }
 
 void Network::serve(Row& row, hal::TimeNs now) {
@@ -263,14 +257,14 @@ void Network::ask_description(Row& row, hal::TimeNs now) noexcept {
     return;
   }
   drop_draft(row);
-  transmit(GetNodeDescription{row.node.id, kVersion});
+  send(GetNodeDescription{row.node.id, kVersion});
   asking_ = row.node.id;
   asking_until_ns_ = now + timing_.describe_ns;
 }
 
 void Network::ask_all(hal::TimeNs now) noexcept {
   for (const std::uint8_t id : known()) drop_draft((*rows_)[id]);
-  asked_all_ = transmit(GetDescription{kOldVersion});
+  asked_all_ = send(GetDescription{kOldVersion});
   asking_ = kAll;
   asking_until_ns_ = now + timing_.describe_ns;
 }
@@ -365,10 +359,7 @@ void Network::take_in(const MessageView& view, hal::TimeNs now) {
   ++statistics_.messages;
   const bool from_host = view.source == kHost || view.type >= kFirstCommand;
   if (from_host) ++statistics_.other_hosts;
-  if (view.source >= kNodeIds) {
-    ++statistics_.foreign_sources;
-    return;
-  }
+  if (view.source >= kNodeIds) return;
   const Decoded decoded = decode(view.type, view.payload, message_);
   if (decoded != Decoded::Good) ++statistics_.not_understood;
   if (view.type < kFirstBootloader && decoded == Decoded::Good) keep_event(view);
@@ -496,7 +487,7 @@ bool Network::send_writes(Row& row) noexcept {
     if (range.count == 0) return true;
     words_.clear();
     words_.append(std::span<const std::int16_t>(image.to_write).subspan(range.start, range.count));
-    if (!transmit(SetVariables{row.node.id, static_cast<std::uint16_t>(range.start), words_.words()})) return false;
+    if (!send(SetVariables{row.node.id, static_cast<std::uint16_t>(range.start), words_.words()})) return false;
     image.unmark(range.start, range.count, Image::kDirty);
     ++row.node.statistics.writes;
     from = range.start + range.count;
@@ -523,8 +514,7 @@ bool Network::send_read(Row& row, hal::TimeNs now) noexcept {
     read = {true, range.start, range.count, now, again ? row.given_up.first_ns : now, 0, 0};
     row.cursor = range.start + range.count;
   }
-  if (!transmit(
-          GetVariables{node.id, static_cast<std::uint16_t>(read.start), static_cast<std::uint16_t>(read.count)})) {
+  if (!send(GetVariables{node.id, static_cast<std::uint16_t>(read.start), static_cast<std::uint16_t>(read.count)})) {
     if (read.tries == 0) read = {};
     return false;
   }

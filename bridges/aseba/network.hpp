@@ -44,13 +44,11 @@ struct Event {
 
 struct NetworkStatistics {
   std::uint64_t messages = 0;
-  std::uint64_t foreign_sources = 0;  ///< messages from ids beyond 255
-  std::uint64_t not_understood = 0;   ///< their payload is not that of their type, or the type is unknown
-  std::uint64_t other_hosts = 0;      ///< messages that only a host sends: there is another one on this bus
-  std::uint64_t rounds = 0;           ///< of asking who is there
+  std::uint64_t not_understood = 0;  ///< their payload is not that of their type, or the type is unknown
+  std::uint64_t other_hosts = 0;     ///< messages that only a host sends: there is another one on this bus
+  std::uint64_t rounds = 0;          ///< of asking who is there
   std::uint64_t events = 0;
   std::uint64_t events_dropped = 0;  ///< nobody took them in time; the oldest go first
-  std::uint64_t not_sent = 0;        ///< messages that the link did not take; they are tried again
   std::uint64_t stops = 0;           ///< calls of `forget_writes`
   std::uint64_t carrier_losses = 0;
 };
@@ -143,7 +141,6 @@ class Network {
   bool send_all(bool writes, hal::TimeNs now);
   bool send_writes(Row& row) noexcept;
   bool send_read(Row& row, hal::TimeNs now) noexcept;
-  bool transmit(const Message& message) noexcept;
   void due(hal::TimeNs at) noexcept { deadline_ = std::min(deadline_, at); }
 
   MessageLink& link_;

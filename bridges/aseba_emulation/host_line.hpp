@@ -1,32 +1,16 @@
-// Interface of the line from an emulated robot's nodes to its hosts, which carries whole messages.
+// Lines from an emulated robot's nodes to its hosts, which carry whole messages.
 #pragma once
 #include <memory>
-#include <poll.h>
 #include <string>
-#include <vector>
 
 #include "bridges/aseba_emulation/message.hpp"
 #include "bridges/emulation/event_log.hpp"
+#include "bridges/emulation/item_line.hpp"
 #include "hal/result.hpp"
 
 namespace tandem::bridges::aseba_emulation {
 
-/// Nothing here blocks.
-class HostLine {
- public:
-  virtual ~HostLine() = default;
-  /// What is to be waited for.
-  virtual void add_polls(std::vector<pollfd>& polls) const = 0;
-  /// Takes in what hosts have sent, or a part of it. Errors: the line is gone for good.
-  virtual hal::Status take(hal::TimeNs now, std::vector<Message>& from_hosts) = 0;
-  /// Sends to every host; what cannot go at once waits for `flush`.
-  virtual void tell(const Message& message, hal::TimeNs now) = 0;
-  virtual void flush(hal::TimeNs now) = 0;
-  /// For people: what a host opens.
-  virtual const std::string& path() const = 0;
-  /// LINK text that opens the same line again.
-  virtual const std::string& link() const = 0;
-};
+using HostLine = ItemLine<Message>;
 
 /// "tcp-listen:PORT", on this computer alone, or "tcp-listen:ADDRESS:PORT" (0.0.0.0 for all of its networks): as a
 /// switch, any number of hosts; what one says is passed on to the others. Port 0 is any that is free. Errors: not a

@@ -30,27 +30,18 @@ struct Speed {
   unsigned long baud;
 };
 
-constexpr std::array<Speed, 12> kSpeeds = {{{B1200, 1200},
-                                            {B2400, 2400},
-                                            {B4800, 4800},
-                                            {B9600, 9600},
-                                            {B19200, 19200},
-                                            {B38400, 38400},
-                                            {B57600, 57600},
-                                            {B115200, 115200},
-                                            {B230400, 230400},
-                                            {B460800, 460800},
-                                            {B921600, 921600},
-                                            {B1000000, 1000000}}};
+constexpr Speed kSpeeds[] = {{B1200, 1200},     {B2400, 2400},     {B4800, 4800},     {B9600, 9600},
+                             {B19200, 19200},   {B38400, 38400},   {B57600, 57600},   {B115200, 115200},
+                             {B230400, 230400}, {B460800, 460800}, {B921600, 921600}, {B1000000, 1000000}};
 
 unsigned long baud_of(speed_t code) {
-  const auto found = std::ranges::find(kSpeeds, code, &Speed::code);
-  return found == kSpeeds.end() ? 0 : found->baud;
+  const auto* const found = std::ranges::find(kSpeeds, code, &Speed::code);
+  return found == std::end(kSpeeds) ? 0 : found->baud;
 }
 
 speed_t code_of(unsigned long baud) {
-  const auto found = std::ranges::find(kSpeeds, baud, &Speed::baud);
-  TANDEM_CHECK(found != kSpeeds.end(), "a robot's speed is a usual one");
+  const auto* const found = std::ranges::find(kSpeeds, baud, &Speed::baud);
+  TANDEM_CHECK(found != std::end(kSpeeds), "a robot's speed is a usual one");
   return found->code;
 }
 

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "bridges/emulation/delays.hpp"
 #include "bridges/emulation/emulator_type.hpp"
 #include "bridges/emulation/fault_table.hpp"
+#include "bridges/emulation/item_line.hpp"
 #include "bridges/emulation/serving.hpp"
 #include "bridges/emulation/true_pose.hpp"
 #include "bridges/emulation/wheeled_body.hpp"
@@ -102,32 +104,33 @@ class Server {
 
 /// Server of one robot on two wheels: its faults, the line that may hang up, its true pose.
 ///
-/// `Robot` is made of its options, a body and a sink, and has run_until, next_event and first_driven_at; `Plan` is a
-/// FaultSchedule with the kind Hangup; `Own` is a WheeledBodyOf.
-template <class Robot, class Plan, class Own>
+/// `Robot` is made of its options, a body and a sink, and has power_on, run_until, next_event and first_driven_at;
+/// `Plan` is a FaultSchedule with the kind Hangup; `Own` is a WheeledBodyOf; `Line` has path and link.
+template <class Robot, class Plan, class Own, class Line>
 class WheeledServer : public Server {
  protected:
+  /// `name` of the robot, for people.
   template <class Body>
   WheeledServer(const WheeledOptions<Body>& options, const EventSink& events, Plan faults,
-                const typename Robot::Options& robot)
+                const typename Robot::Options& robot, std::string name)
       : Server(in_order(events)),
-        link_(options.link),
         faults_(std::move(faults)),
         has_own_body_(options.body == nullptr),
         own_body_(options.poses.start, options.arena, options.wheels),
         robot_(robot, has_own_body_ ? own_body_ : *options.body, tell_),
         to_robot_delay_ns_(delay_ns(options.delays.to_robot_s)),
         to_host_delay_ns_(delay_ns(options.delays.to_host_s)),
+        served_(options),
+        name_(std::move(name)),
+        link_(options.link),
         pose_elsewhere_(options.pose_elsewhere),
         poses_(options.poses.poses_hz) {}
 
-  /// Opens the line of `link_`, at the start and after a hang-up; then `link_` opens the same one again: hosts come
-  /// back to where they were, although its port was chosen freely.
-  virtual hal::Status open() = 0;
-  /// Closes the line and forgets what is on its way.
-  virtual void close() = 0;
-  /// Tells of the start, and has the robot start.
-  virtual void power_on(hal::TimeNs start) = 0;
+  virtual hal::Result<std::unique_ptr<Line>> open_line(const std::string& link) = 0;
+  /// Forgets what is on its way.
+  virtual void forget() = 0;
+  /// What the log's first line says.
+  virtual EventFields start_fields() const = 0;
   /// Does what concerns the robot and its own body.
   virtual void apply_fault(const typename Plan::Change& change) = 0;
   /// From the line to the robot.
@@ -143,14 +146,18 @@ class WheeledServer : public Server {
     if (const hal::Status opened = open(); !opened.ok()) return opened;
     const hal::TimeNs start = monotonic_ns();
     faults_.begin(start);
-    power_on(start);
+    tell_(start, "start", start_fields());
+    robot_.power_on(start);
+    served_.log.info(name_ + " on " + line_->path());
+    if (served_.ready) served_.ready(line_->path());
     return {};
   }
   hal::Status turn(hal::TimeNs now) final {
     hal::Status status = apply_changes(faults_, now, tell_, [this](const typename Plan::Change& change) {
       apply_fault(change);
       if (change.fault->kind != Plan::Kind::Hangup) return hal::Status{};
-      close();
+      forget();
+      line_.reset();
       return change.begins ? hal::Status{} : open();
     });
     if (status.ok()) status = take_in(now);
@@ -173,7 +180,7 @@ class WheeledServer : public Server {
     tell_(now, "end", fields);
   }
 
-  std::string link_;
+  std::unique_ptr<Line> line_;  // none while hung up
   Plan faults_;
   bool has_own_body_;  // else its body lives in another
   Own own_body_;
@@ -181,12 +188,23 @@ class WheeledServer : public Server {
   hal::TimeNs to_robot_delay_ns_, to_host_delay_ns_;
 
  private:
+  /// At the start and after a hang-up. Then `link_` opens the same line again: hosts come back to where they were,
+  /// although its port was chosen freely.
+  hal::Status open() {
+    auto line = open_line(link_);
+    if (!line.ok()) return line.error();
+    line_ = std::move(line).value();
+    link_ = line_->link();
+    return {};
+  }
   std::optional<BodyPose> pose(hal::TimeNs at) {
     if (!has_own_body_) return pose_elsewhere_ ? pose_elsewhere_() : std::nullopt;
     own_body_.advance(at);
     return own_body_.pose();
   }
 
+  const ServerOptions& served_;
+  std::string name_, link_;
   std::function<std::optional<BodyPose>()> pose_elsewhere_;
   PoseTeller poses_;
 };
@@ -202,6 +220,58 @@ template <class Timed>
 void take_due(std::deque<Timed>& line, hal::TimeNs now, const auto& use) {
   for (; !line.empty() && line.front().at <= now; line.pop_front()) use(line.front());
 }
+
+/// The same where the line carries whole messages or frames: of a `Timed`, which has a time `at`, what is `kItem`.
+template <class Robot, class Plan, class Own, class Timed, class Item, Item Timed::*kItem>
+class ItemServer : public WheeledServer<Robot, Plan, Own, ItemLine<Item>> {
+ protected:
+  using ItemServer::WheeledServer::WheeledServer;
+
+  /// When an item of a host, taken in at `now`, has come through to the robot.
+  virtual hal::TimeNs passed_at(const Item& /*item*/, hal::TimeNs now) { return now; }
+  /// Until then nothing more is taken in.
+  virtual hal::TimeNs full_until() const { return 0; }
+
+ private:
+  void forget() final {
+    to_robot_.clear();
+    to_host_.clear();
+  }
+  hal::Status take_in(hal::TimeNs now) final {
+    std::vector<Item> from_hosts;
+    if (this->line_ && full_until() <= now) {
+      if (const hal::Status status = this->line_->take(now, from_hosts); !status.ok()) return status;
+    }
+    for (Item& item : from_hosts) {
+      const hal::TimeNs at = passed_at(item, now);
+      if (this->faults_.reaches_robot(at)) to_robot_.push_back({std::move(item), at + this->to_robot_delay_ns_});
+    }
+    take_due(to_robot_, now, [this](const Timed& t) { this->robot_.receive(t.*kItem, t.at); });
+    return {};
+  }
+  void give_out(hal::TimeNs now) final {
+    std::vector<Timed> sent, arriving;
+    this->robot_.take_sent(sent);
+    for (const Timed& t : sent) this->faults_.to_host(t, arriving);
+    if (!this->line_) return;
+    for (Timed& t : arriving) {
+      t.at += this->to_host_delay_ns_;
+      to_host_.push_back(std::move(t));
+    }
+    take_due(to_host_, now, [this](const Timed& t) { this->line_->tell(t.*kItem, t.at); });
+    this->line_->flush(now);
+  }
+  hal::TimeNs next_arrival(hal::TimeNs now) const final {
+    const hal::TimeNs next = this->robot_.next_event();
+    return std::min(
+        {next, first_at(to_robot_, next), first_at(to_host_, next), full_until() > now ? full_until() : next});
+  }
+  void add_polls(hal::TimeNs now, std::vector<pollfd>& polls) const final {
+    if (this->line_ && full_until() <= now) this->line_->add_polls(polls);
+  }
+
+  std::deque<Timed> to_robot_, to_host_;
+};
 
 /// Opens the log and reads the faults of `options`, then serves. `make(events, faults)` gives the server.
 template <class Fault, class Make>

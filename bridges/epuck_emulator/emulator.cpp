@@ -25,20 +25,6 @@ constexpr unsigned long kRobotBaud = 115200;
 constexpr const char* kName = "an emulated e-puck";
 constexpr std::string_view kTcp = "tcp-listen:", kRadio = "epuck-tcp-listen:";
 
-hal::Result<std::unique_ptr<HostLine>> open_line(const std::string& link) {
-  const auto tcp = [&link](std::string_view scheme, std::string_view host) -> hal::Result<std::unique_ptr<HostLine>> {
-    auto port = TcpPort::open(scheme.substr(0, scheme.size() - 1), host, link.substr(scheme.size()), kRobotBaud);
-    if (!port.ok()) return port.error();
-    return std::unique_ptr<HostLine>(std::move(port).value());
-  };
-  if (link.starts_with(kRadio)) return tcp(kRadio, "epuck-tcp");
-  if (link.starts_with(kTcp)) return tcp(kTcp, "tcp");
-  auto port = SerialPort::open(link, kName, kRobotBaud);
-  if (!port.ok())
-    return hal::Error{port.error().message + "; or " + std::string(kTcp) + "PORT, " + std::string(kRadio) + "PORT"};
-  return std::unique_ptr<HostLine>(std::move(port).value());
-}
-
 /// A wire: bytes in the order of the times at which they are through.
 using Wire = std::deque<SentByte>;
 
@@ -48,17 +34,27 @@ std::optional<TimeNs> batch_at(const Wire& wire) {
   return std::max(wire.front().at, std::min(wire.back().at, wire.front().at + kBatchNs));
 }
 
-class EpuckServer final : public WheeledServer<Firmware, FaultPlan, KinematicBody> {
+class EpuckServer final : public WheeledServer<Firmware, FaultPlan, KinematicBody, HostLine> {
  public:
   EpuckServer(const Options& options, const EventSink& events, FaultPlan faults, const Firmware::Options& robot)
-      : WheeledServer(options, events, std::move(faults), robot), options_(options) {
+      : WheeledServer(options, events, std::move(faults), robot, "e-puck (" + options.firmware + ")"),
+        options_(options) {
     if (options.link.starts_with(kRadio)) radio_.emplace(robot_);
   }
 
  private:
-  hal::Status open() override;
-  void close() override;
-  void power_on(TimeNs start) override;
+  hal::Result<std::unique_ptr<HostLine>> open_line(const std::string& link) override;
+  void forget() override {
+    to_robot_.clear();
+    to_host_.clear();
+  }
+  EventFields start_fields() const override {
+    return {{"firmware", facts_of(robot_.options().variant).name},
+            {"link", options_.link},
+            {"path", line_->path()},
+            {"device", line_->device()},
+            {"seed", options_.seed}};
+  }
   void apply_fault(const FaultPlan::Change& change) override;
   hal::Status take_in(TimeNs now) override;
   void give_out(TimeNs now) override;
@@ -76,7 +72,6 @@ class EpuckServer final : public WheeledServer<Firmware, FaultPlan, KinematicBod
   bool same_baud(TimeNs now);
 
   const Options& options_;
-  std::unique_ptr<HostLine> port_;  // none while hung up
   std::optional<Radio> radio_;
   std::uint64_t hosts_ = 0;  // of the radio
   Wire to_robot_, to_host_;
@@ -86,30 +81,18 @@ class EpuckServer final : public WheeledServer<Firmware, FaultPlan, KinematicBod
   std::vector<SentByte> sent_;
 };
 
-hal::Status EpuckServer::open() {
-  auto port = open_line(link_);
-  if (!port.ok()) return port.error();
-  port_ = std::move(port).value();
-  link_ = port_->link();
-  return {};
-}
-
-void EpuckServer::close() {
-  to_robot_.clear();
-  to_host_.clear();
-  port_.reset();
-}
-
-void EpuckServer::power_on(TimeNs start) {
-  tell_(start, "start",
-        {{"firmware", facts_of(robot_.options().variant).name},
-         {"link", options_.link},
-         {"path", port_->path()},
-         {"device", port_->device()},
-         {"seed", options_.seed}});
-  robot_.power_on(start);
-  options_.log.info("e-puck (" + options_.firmware + ") on " + port_->path());
-  if (options_.ready) options_.ready(port_->path());
+hal::Result<std::unique_ptr<HostLine>> EpuckServer::open_line(const std::string& link) {
+  const auto tcp = [&link](std::string_view scheme, std::string_view host) -> hal::Result<std::unique_ptr<HostLine>> {
+    auto port = TcpPort::open(scheme.substr(0, scheme.size() - 1), host, link.substr(scheme.size()), kRobotBaud);
+    if (!port.ok()) return port.error();
+    return std::unique_ptr<HostLine>(std::move(port).value());
+  };
+  if (link.starts_with(kRadio)) return tcp(kRadio, "epuck-tcp");
+  if (link.starts_with(kTcp)) return tcp(kTcp, "tcp");
+  auto port = SerialPort::open(link, kName, kRobotBaud);
+  if (!port.ok())
+    return hal::Error{port.error().message + "; or " + std::string(kTcp) + "PORT, " + std::string(kRadio) + "PORT"};
+  return std::unique_ptr<HostLine>(std::move(port).value());
 }
 
 void EpuckServer::apply_fault(const FaultPlan::Change& change) {
@@ -133,9 +116,9 @@ void EpuckServer::give_out(TimeNs now) {
 
 // Reads no more than the host's driver would let go: a byte each 87 microseconds gets through.
 hal::Status EpuckServer::read_line(TimeNs now) {
-  if (!port_ || to_robot_.size() >= kQueueBytes) return {};
+  if (!line_ || to_robot_.size() >= kQueueBytes) return {};
   std::array<std::uint8_t, kQueueBytes> buffer{};
-  const auto count = port_->read(std::span(buffer).first(kQueueBytes - to_robot_.size()));
+  const auto count = line_->read(std::span(buffer).first(kQueueBytes - to_robot_.size()));
   if (!count.ok()) return count.error();
   greet_host(now);
   if (count.value() == 0) return {};
@@ -148,7 +131,7 @@ hal::Status EpuckServer::read_line(TimeNs now) {
 }
 
 void EpuckServer::greet_host(TimeNs now) {
-  const auto* const tcp = dynamic_cast<const TcpPort*>(port_.get());
+  const auto* const tcp = dynamic_cast<const TcpPort*>(line_.get());
   if (tcp == nullptr || tcp->hosts() == hosts_) return;
   hosts_ = tcp->hosts();
   to_robot_.clear();
@@ -171,7 +154,7 @@ void EpuckServer::take_sent(TimeNs now) {
   radio_ ? radio_->take_sent(now, sent_) : robot_.take_sent(now, sent_);
   for (const SentByte& s : sent_) {
     const auto byte = faults_.to_host(s.byte, s.at);
-    if (!byte || !port_) continue;
+    if (!byte || !line_) continue;
     const TimeNs at = s.at + to_host_delay_ns_ + faults_.delay_ns(s.at);
     const SentByte sent{*byte, to_host_.empty() ? at : std::max(at, to_host_.back().at)};
     to_host_.push_back(sent);
@@ -182,23 +165,23 @@ void EpuckServer::take_sent(TimeNs now) {
 void EpuckServer::make_noise(TimeNs now) {
   for (; next_noise_ <= now && faults_.active(FaultKind::Garbage, next_noise_); next_noise_ += kNoiseNs) {
     const auto byte = faults_.to_host(0, next_noise_);
-    if (byte && port_) to_host_.push_back({*byte, now});
+    if (byte && line_) to_host_.push_back({*byte, now});
   }
 }
 
 void EpuckServer::write_line(TimeNs now) {
   std::vector<std::uint8_t> due;
   take_due(to_host_, now, [&due](const SentByte& sent) { due.push_back(sent.byte); });
-  if (due.empty() || !port_) return;
+  if (due.empty() || !line_) return;
   if (!same_baud(now)) {
     for (std::uint8_t& byte : due) byte = faults_.garble(byte);
   }
-  const std::size_t gone = port_->write(due);
+  const std::size_t gone = line_->write(due);
   if (gone < due.size()) tell_(now, "overflow", {{"buffer", "host"}, {"bytes", due.size() - gone}});
 }
 
 bool EpuckServer::same_baud(TimeNs now) {
-  const unsigned long baud = port_->host_baud();
+  const unsigned long baud = line_->host_baud();
   if (baud != host_baud_) tell_(now, "baud", {{"host", baud}, {"robot", kRobotBaud}});
   host_baud_ = baud;
   return baud == kRobotBaud;
@@ -213,14 +196,14 @@ TimeNs EpuckServer::next_arrival(TimeNs now) const {
 }
 
 void EpuckServer::add_polls(TimeNs /*now*/, std::vector<pollfd>& polls) const {
-  if (port_) polls.push_back({to_robot_.size() < kQueueBytes ? port_->descriptor() : -1, POLLIN, 0});
+  if (line_) polls.push_back({to_robot_.size() < kQueueBytes ? line_->descriptor() : -1, POLLIN, 0});
 }
 
 // A host that hung up shows in reading; another one may come.
 hal::Status EpuckServer::polled(const std::vector<pollfd>& polls) const {
-  const bool network = dynamic_cast<const TcpPort*>(port_.get()) != nullptr;
+  const bool network = dynamic_cast<const TcpPort*>(line_.get()) != nullptr;
   const bool gone = !network && !polls.empty() && (polls[0].revents & (POLLHUP | POLLERR | POLLNVAL)) != 0;
-  if (gone) return hal::Error{"the serial line '" + port_->path() + "' has gone; was its cable pulled?"};
+  if (gone) return hal::Error{"the serial line '" + line_->path() + "' has gone; was its cable pulled?"};
   return {};
 }
 

@@ -28,7 +28,7 @@ class AdapterSide final : public HostSide {
     return {};
   }
 
-  void show(const Frame& frame, hal::TimeNs now) override {
+  void tell(const Frame& frame, hal::TimeNs now) override {
     adapter_.show(frame, now);
     flush(now);
   }
@@ -44,6 +44,7 @@ class AdapterSide final : public HostSide {
   }
 
   const std::string& path() const override { return port_->path(); }
+  const std::string& link() const override { return port_->link(); }
 
  private:
   std::unique_ptr<SerialPort> port_;

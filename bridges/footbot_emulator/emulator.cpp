@@ -1,7 +1,7 @@
 #include "bridges/footbot_emulator/emulator.hpp"
 
 #include <algorithm>
-#include <deque>
+#include <memory>
 
 #include "bridges/footbot_emulator/faults.hpp"
 #include "bridges/footbot_emulator/host_side.hpp"
@@ -21,61 +21,35 @@ hal::Result<Protocol> protocol_of(const std::string& firmware) {
   return hal::Error{"a foot-bot has no firmware '" + firmware + "'; there are v4 and v5, after the protocol's version"};
 }
 
-class FootbotServer final : public WheeledServer<Footbot, FaultPlan, KinematicBody> {
+class FootbotServer final
+    : public ItemServer<Footbot, FaultPlan, KinematicBody, TimedFrame, Frame, &TimedFrame::frame> {
  public:
   FootbotServer(const Options& options, const EventSink& events, FaultPlan faults, Protocol protocol)
-      : WheeledServer(options, events, std::move(faults), {.protocol = protocol, .delays = options.delays}),
+      : ItemServer(options, events, std::move(faults), {.protocol = protocol, .delays = options.delays},
+                   "foot-bot (" + options.firmware + ")"),
         options_(options) {}
 
  private:
-  hal::Status open() override;
-  void close() override;
-  void power_on(TimeNs start) override;
-  void apply_fault(const FaultPlan::Change& change) override;
-  hal::Status take_in(TimeNs now) override;
-  void give_out(TimeNs now) override;
-  TimeNs next_arrival(TimeNs now) const override;
-  void add_polls(TimeNs now, std::vector<pollfd>& polls) const override {
-    if (side_ && !is_full(now)) side_->add_polls(polls);
+  hal::Result<std::unique_ptr<HostSide>> open_line(const std::string& link) override {
+    return open_host_side(link, tell_);
   }
-  EventFields last_command() const override;
-  bool is_full(TimeNs now) const noexcept { return bus_free_at_ > now + kMostBacklogNs; }
+  EventFields start_fields() const override {
+    return {{"firmware", options_.firmware}, {"link", options_.link}, {"path", line_->path()}, {"seed", options_.seed}};
+  }
+  void apply_fault(const FaultPlan::Change& change) override;
+  TimeNs passed_at(const Frame& frame, TimeNs now) override {
+    return bus_free_at_ = std::max(bus_free_at_, now) + duration_ns(frame);
+  }
+  TimeNs full_until() const override { return bus_free_at_ - kMostBacklogNs; }
+  EventFields last_command() const override {
+    return {{"left", robot_.module(Place::LeftMotor).words("speed")[0]},
+            {"right", robot_.module(Place::RightMotor).words("speed")[0]},
+            {"wheels_commanded_t_ns", robot_.wheels_commanded_at().value_or(0)}};
+  }
 
   const Options& options_;
-  std::unique_ptr<HostSide> side_;  // none while hung up
-  TimeNs bus_free_at_ = 0;          // when the last frame of the host has passed
-  std::deque<TimedFrame> to_robot_, to_host_;
+  TimeNs bus_free_at_ = 0;  // when the last frame of the host has passed
 };
-
-hal::Status FootbotServer::open() {
-  auto side = open_host_side(link_, tell_);
-  if (!side.ok()) return side.error();
-  side_ = std::move(side).value();
-  if (link_.starts_with("tcp-listen:") && link_.ends_with(":0")) {
-    link_ = link_.substr(0, link_.size() - 1) + side_->path().substr(side_->path().rfind(':') + 1);
-  }
-  return {};
-}
-
-void FootbotServer::close() {
-  to_robot_.clear();
-  to_host_.clear();
-  side_.reset();
-}
-
-void FootbotServer::power_on(TimeNs start) {
-  tell_(start, "start",
-        {{"firmware", options_.firmware}, {"link", options_.link}, {"path", side_->path()}, {"seed", options_.seed}});
-  robot_.power_on(start);
-  options_.log.info("foot-bot (" + options_.firmware + ") on " + side_->path());
-  if (options_.ready) options_.ready(side_->path());
-}
-
-EventFields FootbotServer::last_command() const {
-  return {{"left", robot_.module(Place::LeftMotor).words("speed")[0]},
-          {"right", robot_.module(Place::RightMotor).words("speed")[0]},
-          {"wheels_commanded_t_ns", robot_.wheels_commanded_at().value_or(0)}};
-}
 
 void FootbotServer::apply_fault(const FaultPlan::Change& change) {
   const Fault& fault = *change.fault;
@@ -83,35 +57,6 @@ void FootbotServer::apply_fault(const FaultPlan::Change& change) {
   if (!has_own_body_) return;
   if (fault.kind == FaultKind::Carry) own_body_.carry(change.at, fault.carried[0], fault.carried[1], fault.carried[2]);
   if (fault.kind == FaultKind::Held) own_body_.hold(change.at, change.begins);
-}
-
-hal::Status FootbotServer::take_in(TimeNs now) {
-  std::vector<Frame> from_host;
-  if (side_ && !is_full(now)) {
-    if (const hal::Status status = side_->take(now, from_host); !status.ok()) return status;
-  }
-  for (const Frame& frame : from_host) {
-    bus_free_at_ = std::max(bus_free_at_, now) + duration_ns(frame);
-    if (faults_.reaches_robot(bus_free_at_)) to_robot_.push_back({frame, bus_free_at_ + to_robot_delay_ns_});
-  }
-  take_due(to_robot_, now, [this](const TimedFrame& f) { robot_.receive(f.frame, f.at); });
-  return {};
-}
-
-void FootbotServer::give_out(TimeNs now) {
-  std::vector<TimedFrame> sent, arriving;
-  robot_.take_sent(sent);
-  for (const TimedFrame& frame : sent) faults_.to_host(frame, arriving);
-  if (!side_) return;
-  for (const TimedFrame& f : arriving) to_host_.push_back({f.frame, f.at + to_host_delay_ns_});
-  take_due(to_host_, now, [this](const TimedFrame& f) { side_->show(f.frame, f.at); });
-  side_->flush(now);
-}
-
-TimeNs FootbotServer::next_arrival(TimeNs now) const {
-  const TimeNs next = robot_.next_event();
-  return std::min(
-      {next, first_at(to_robot_, next), first_at(to_host_, next), is_full(now) ? bus_free_at_ - kMostBacklogNs : next});
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ class SocketCanSide final : public HostSide {
     return {};
   }
 
-  void show(const Frame& frame, hal::TimeNs now) override {
+  void tell(const Frame& frame, hal::TimeNs now) override {
     unsent_.push_back(frame);
     flush(now);
     if (unsent_.size() <= kMostKept) return;
@@ -66,6 +66,7 @@ class SocketCanSide final : public HostSide {
   }
 
   const std::string& path() const override { return path_; }
+  const std::string& link() const override { return path_; }
 
  private:
   std::string path_;

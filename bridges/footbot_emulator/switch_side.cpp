@@ -23,12 +23,13 @@ class SwitchSide final : public HostSide {
     return {};
   }
 
-  void show(const Frame& frame, hal::TimeNs now) override {
+  void tell(const Frame& frame, hal::TimeNs now) override {
     if (const auto message = assembler_.push(frame)) line_->tell(*message, now);
   }
 
   void flush(hal::TimeNs now) override { line_->flush(now); }
   const std::string& path() const override { return line_->path(); }
+  const std::string& link() const override { return line_->link(); }
 
  private:
   std::unique_ptr<aseba_emulation::HostLine> line_;

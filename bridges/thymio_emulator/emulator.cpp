@@ -1,7 +1,5 @@
 #include "bridges/thymio_emulator/emulator.hpp"
 
-#include <algorithm>
-#include <deque>
 #include <memory>
 
 #include "bridges/aseba_emulation/host_line.hpp"
@@ -13,88 +11,30 @@
 namespace tandem::bridges::thymio_emulator {
 namespace {
 
-using hal::TimeNs;
-
-class ThymioServer final : public WheeledServer<Thymio, FaultPlan, KinematicBody> {
+class ThymioServer final
+    : public ItemServer<Thymio, FaultPlan, KinematicBody, TimedMessage, Message, &TimedMessage::message> {
  public:
   ThymioServer(const Options& options, const EventSink& events, FaultPlan faults)
-      : WheeledServer(options, events, std::move(faults),
-                      {.node = static_cast<std::uint8_t>(options.node), .delays = options.delays}),
-        options_(options),
-        to_robot_(options.delays.to_robot_s) {}
+      : ItemServer(options, events, std::move(faults),
+                   {.node = static_cast<std::uint8_t>(options.node), .delays = options.delays}, "Thymio"),
+        options_(options) {}
 
  private:
-  hal::Status open() override;
-  void close() override;
-  void power_on(TimeNs start) override;
-  void apply_fault(const FaultPlan::Change& change) override { apply(change, robot_); }
-  hal::Status take_in(TimeNs now) override;
-  void give_out(TimeNs now) override;
-  TimeNs next_arrival(TimeNs now) const override;
-  void add_polls(TimeNs /*now*/, std::vector<pollfd>& polls) const override {
-    if (line_) line_->add_polls(polls);
+  hal::Result<std::unique_ptr<aseba_emulation::HostLine>> open_line(const std::string& link) override {
+    return aseba_emulation::open_host_line(link, "an emulated Thymio", kBaud, tell_);
   }
-  EventFields last_command() const override;
+  EventFields start_fields() const override {
+    return {{"link", options_.link}, {"path", line_->path()}, {"seed", options_.seed}};
+  }
+  void apply_fault(const FaultPlan::Change& change) override { apply(change, robot_); }
+  EventFields last_command() const override {
+    return {{"left", robot_.left_target()},
+            {"right", robot_.right_target()},
+            {"wheels_commanded_t_ns", robot_.wheels_commanded_at().value_or(0)}};
+  }
 
   const Options& options_;
-  DelayLine<Message> to_robot_;
-  std::unique_ptr<aseba_emulation::HostLine> line_;  // none while hung up
-  std::deque<TimedMessage> to_hosts_;
 };
-
-hal::Status ThymioServer::open() {
-  auto line = aseba_emulation::open_host_line(link_, "an emulated Thymio", kBaud, tell_);
-  if (!line.ok()) return line.error();
-  line_ = std::move(line).value();
-  link_ = line_->link();
-  return {};
-}
-
-void ThymioServer::close() {
-  to_hosts_.clear();
-  to_robot_.clear();
-  line_.reset();
-}
-
-void ThymioServer::power_on(TimeNs start) {
-  tell_(start, "start", {{"link", options_.link}, {"path", line_->path()}, {"seed", options_.seed}});
-  robot_.power_on(start);
-  options_.log.info("Thymio on " + line_->path());
-  if (options_.ready) options_.ready(line_->path());
-}
-
-EventFields ThymioServer::last_command() const {
-  return {{"left", robot_.left_target()},
-          {"right", robot_.right_target()},
-          {"wheels_commanded_t_ns", robot_.wheels_commanded_at().value_or(0)}};
-}
-
-hal::Status ThymioServer::take_in(TimeNs now) {
-  std::vector<Message> from_hosts;
-  if (line_) {
-    if (const hal::Status status = line_->take(now, from_hosts); !status.ok()) return status;
-  }
-  for (const Message& message : from_hosts) {
-    if (faults_.reaches_robot(now)) to_robot_.put(now, message);
-  }
-  to_robot_.take(now, [this](TimeNs at, const Message& message) { robot_.receive(message, at); });
-  return {};
-}
-
-void ThymioServer::give_out(TimeNs now) {
-  std::vector<TimedMessage> sent, arriving;
-  robot_.take_sent(sent);
-  for (const TimedMessage& message : sent) faults_.to_host(message, arriving);
-  if (!line_) return;
-  for (TimedMessage& m : arriving) to_hosts_.push_back({std::move(m.message), m.at + to_host_delay_ns_});
-  take_due(to_hosts_, now, [&](const TimedMessage& m) { line_->tell(m.message, now); });
-  line_->flush(now);
-}
-
-TimeNs ThymioServer::next_arrival(TimeNs /*now*/) const {
-  const TimeNs next = robot_.next_event();
-  return std::min({next, first_at(to_hosts_, next), to_robot_.next_at().value_or(next)});
-}
 
 }  // namespace
 

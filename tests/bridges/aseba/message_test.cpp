@@ -123,13 +123,7 @@ TEST(Message, HasTheNumbersOfTheProtocol) {
                                                                   {GetNodeDescription{}, 0xA010},
                                                                   {ListNodes{}, 0xA011}};
   EXPECT_EQ(numbers.size() + 1, std::variant_size_v<Message>);  // and the user event
-  for (const auto& [message, number] : numbers) {
-    EXPECT_EQ(type_of(message), number);
-    EXPECT_NE(type_name(number), "unknown");
-  }
-  EXPECT_EQ(type_name(0xA00C), "SET_VARIABLES");
-  EXPECT_EQ(type_name(7), "user event");
-  EXPECT_EQ(type_name(0xFFFF), "unknown");
+  for (const auto& [message, number] : numbers) EXPECT_EQ(type_of(message), number);
 }
 
 TEST(Message, RefusesWhatIsTooShortTooLongOrUnknown) {
