@@ -20,7 +20,7 @@ struct PictureRequest {
   std::vector<double> region;    ///< x0, y0, x1, y1 in metres; empty: the whole arena
   double trails_s = 0.0;
   bool axes = false, ids = false;
-  std::vector<std::string> layers;  ///< of a run alone
+  std::vector<std::string> layers;  ///< over pictures and films
   std::string film;                 ///< .mp4, .mkv, or pictures: "FOLDER/" or "FOLDER/%06d.png"
   std::int64_t film_every = 1;      ///< ticks
   std::string povray;               ///< .pov, or .png beside one: a scene for POV-Ray

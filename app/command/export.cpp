@@ -72,6 +72,16 @@ hal::Status write_csv(const ExportOptions& options) {
   return file.value().commit();
 }
 
+hal::Status write_report(const ExportOptions& options) {
+  auto reader = core::RecordReader::open(options.record);
+  if (!reader.ok()) return reader.error();
+  while (const auto entry = reader.value().next()) {
+    if (entry->type == core::RecordBlock::End)
+      return hal::write_whole_file(options.report, "report", hal::to_text(entry->json) + "\n");
+  }
+  return hal::Error{"record '" + options.record + "' has no end: the run was killed, or the disk was full"};
+}
+
 hal::Status print_contents(const ExportOptions& options) {
   auto opened = core::RecordReader::open(options.record);
   if (!opened.ok()) return opened.error();
@@ -121,6 +131,8 @@ void ExportOptions::describe(hal::CommandLine& line) {
   line.word("record", record, "The record; that of a run that was killed is FILE.part").required().file();
   line.option("--csv", csv, "Write comma-separated values of one table to this file ('-': standard output)").file();
   line.option("--hdf5", hdf5, "Write the tables as data sets to this file, for h5py, Matlab, …").file();
+  line.option("--report", report, "Write what its run said at the end, as `tandem run --report` ('-': standard output)")
+      .file();
   line.option("--table", stream, "Which table, as the record names it; default: in CSV 'pose', in HDF5 all");
   line.option("--fields", fields, "Of HDF5: only these fields, separated by commas").separated();
   line.option("--entities", entities, "Only of these, separated by commas; '*' stands for any text").separated();
@@ -133,13 +145,15 @@ namespace {
 
 int export_record(const ExportOptions& options) {
   if (const hal::Status apart =
-          check_apart({{"table", options.csv}, {"HDF5 file", options.hdf5}}, {{"record", options.record}});
+          check_apart({{"table", options.csv}, {"HDF5 file", options.hdf5}, {"report", options.report}},
+                      {{"record", options.record}});
       !apart.ok())
     return complain(kBadInput, apart.error().message);
   hal::Status done;
-  if (options.csv.empty() && options.hdf5.empty()) done = print_contents(options);
+  if (options.csv.empty() && options.hdf5.empty() && options.report.empty()) done = print_contents(options);
   if (!options.csv.empty()) done = write_csv(options);
   if (done.ok() && !options.hdf5.empty()) done = write_hdf5(options);
+  if (done.ok() && !options.report.empty()) done = write_report(options);
   return done.ok() ? kDone : complain(kBadInput, done.error().message);
 }
 

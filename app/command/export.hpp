@@ -10,8 +10,9 @@ namespace tandem::app {
 
 /// `stream` empty: in CSV "pose"; `fields` are of HDF5.
 struct ExportOptions : core::TableChoice {
-  std::string csv;   ///< file, or "-"; empty: only say what the record holds
-  std::string hdf5;  ///< file; empty: none
+  std::string csv;     ///< file, or "-"; all empty: only say what the record holds
+  std::string hdf5;    ///< file; empty: none
+  std::string report;  ///< file, or "-"; empty: none
 
   void describe(hal::CommandLine& line);
 };

@@ -16,6 +16,7 @@
 #include "app/experiment/plugin_folders.hpp"
 #include "app/experiment/plugins.hpp"
 #include "app/module/modules.hpp"
+#include "app/module/own_plugins.hpp"
 #include "app/process/terminal.hpp"
 #include "controllers/lua_controller/api/manual.hpp"
 #include "core/config/kinds.hpp"
@@ -351,9 +352,27 @@ std::vector<std::string> listed_kinds(const hal::Catalog& catalog) {
   for (const Listing* listing : listings(catalog)) {
     if (listing->list != nullptr) names.emplace_back(listing->name);
   }
+  for (const Module& module : kModules) names.insert(names.end(), module.lists.begin(), module.lists.end());
   std::ranges::sort(names);
   names.erase(std::unique(names.begin(), names.end()), names.end());
   return names;
+}
+
+/// What modules that are not built would add to this list, and libraries of the checkout.
+void list_elsewhere(const hal::PluginLoader& loader, std::string_view kind) {
+  for (const Module& module : kModules) {
+    if (is_loaded(module) || std::ranges::find(module.lists, kind) == module.lists.end()) continue;
+    fmt::print("{} of the module '{}' ({}): NOT BUILT; ./tandem build module {}\n", kind, module.name, module.summary,
+               module.name);
+  }
+  if (kind != "controllers" && kind != "hooks") return;
+  std::string missing;
+  for (const std::string_view name : own_plugins()) {
+    if (!loader.find(std::string(name)).ok()) missing += (missing.empty() ? "" : ", ") + std::string(name);
+  }
+  if (!missing.empty())
+    fmt::print("libraries of the checkout with controllers or hooks that are NOT BUILT, until a file names them: {}\n",
+               missing);
 }
 
 struct ListOptions {
@@ -382,6 +401,7 @@ int list(const ListOptions& options, const hal::CommandContext& context) {
       if (listing->list != nullptr && kind == listing->name && (options.kind.empty() || options.kind == kind))
         listing->list(known->catalog());
     }
+    if (options.kind.empty() || options.kind == kind) list_elsewhere(*known->loader, kind);
   }
   return kDone;
 }

@@ -11,9 +11,6 @@ void describe_pictures(hal::CommandLine& line, PictureRequest& o) {
       .not_negative()
       .needs("--picture");
   describe_looks(line, o);
-  line.option("--picture-layers", o.layers, "Layers over pictures and films: `tandem list layers`")
-      .separated()
-      .named_in("layer");
   line.option("--film", o.film, "Make a film: FILE.mp4 or .mkv (ffmpeg), or pictures: FOLDER/ or FOLDER/%06d.png")
       .file();
   describe_film(line, "--film", o);
@@ -41,14 +38,6 @@ void describe_outputs(hal::CommandLine& line, RunOptions& o) {
   line.option("--log", o.log, "Write all messages of the run to this file: of controllers, too").file();
   line.option("--dump", o.dump, "Write every value of the state at the end as CSV, for `tandem compare`").file();
   line.option("--dump-every", o.dump_every, "… and after every so many ticks").positive().needs("--dump");
-}
-
-void describe_watch(hal::CommandLine& line, WatchRequest& o) {
-  line.flag("--watch", o.watch, "A live table of the run on the terminal; keys pause it and more");
-  line.option("--watch-robots", o.robots, "Only these, separated by commas; '*' stands for any text")
-      .separated()
-      .needs("--watch");
-  line.option("--watch-port", o.port, "The fields of this port, instead of what controllers publish").needs("--watch");
 }
 
 /// Who may look where, and how the run is held for those who do.
@@ -81,6 +70,9 @@ void describe_looks(hal::CommandLine& line, PictureRequest& o) {
   line.option("--picture-trails", o.trails_s, "Where robots were in so many seconds before").not_negative();
   line.flag("--picture-axes", o.axes, "Coordinates along the frame");
   line.flag("--picture-ids", o.ids, "The id beside every robot");
+  line.option("--picture-layers", o.layers, "Layers over pictures and films: `tandem list layers`")
+      .separated()
+      .named_in("layer");
 }
 
 void describe_film(hal::CommandLine& line, std::string_view option, PictureRequest& o) {
@@ -88,6 +80,14 @@ void describe_film(hal::CommandLine& line, std::string_view option, PictureReque
   line.option("--film-rate", o.film_rate, "Frames a second; default: as fast as it was, 60 at most")
       .range(0.1, 240.0)
       .needs(option);
+}
+
+void describe_watch(hal::CommandLine& line, WatchRequest& o) {
+  line.flag("--watch", o.watch, "A live table of the run on the terminal; keys pause it and more");
+  line.option("--watch-robots", o.robots, "Only these, separated by commas; '*' stands for any text")
+      .separated()
+      .needs("--watch");
+  line.option("--watch-port", o.port, "The fields of this port, instead of what controllers publish").needs("--watch");
 }
 
 void describe_run(hal::CommandLine& line, RunOptions& o) {

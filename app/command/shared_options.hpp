@@ -22,6 +22,9 @@ void describe_hub_faults(hal::CommandLine& line, std::vector<std::string>& fault
 /// The option `--desk-keys`.
 void describe_desk_keys(hal::CommandLine& line, std::string& keys);
 
+/// The table on the terminal.
+void describe_watch(hal::CommandLine& line, WatchRequest& request);
+
 /// How pictures and films look.
 void describe_looks(hal::CommandLine& line, PictureRequest& request);
 

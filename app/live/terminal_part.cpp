@@ -23,7 +23,19 @@ class TerminalWatch final : public core::RunPart {
 }  // namespace
 
 void watch(RunPlan& plan, core::Run& run) {
-  Watch::Run watched{*plan.live, *plan.world, plan.steps, plan.real, &request_stop};
+  const core::World& world = *plan.world;
+  Watch::Run watched{*plan.live,
+                     [&world] {
+                       return WatchSight{world.space(), world.tick(), world.ticks_per_second(), world.incidents()};
+                     },
+                     world.scenario().name, plan.steps, world.ticks_per_second()};
+  if (plan.real != nullptr) {
+    watched.add_real = [&real = *plan.real](WatchMoment& moment) {
+      moment.real = real.lines();
+      moment.roll = real.roll_call();
+    };
+  }
+  watched.end = &request_stop;
   run.add(std::make_unique<TerminalWatch>(plan.options.watch, watched));
 }
 

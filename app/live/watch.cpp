@@ -11,7 +11,6 @@
 #include <thread>
 #include <utility>
 
-#include "app/live/watch_page.hpp"
 #include "app/process/screen.hpp"
 #include "app/process/signals.hpp"
 #include "app/process/terminal.hpp"
@@ -60,9 +59,9 @@ struct Watch::Impl {
   Impl(const WatchRequest& request, const Run& r) : run(r) {
     shared->wish.robots = request.robots;
     shared->wish.port = request.port;
-    page.experiment = run.world.scenario().name;
+    page.experiment = run.experiment;
     page.ticks = run.ticks;
-    page.ticks_per_second = run.world.ticks_per_second();
+    page.ticks_per_second = run.ticks_per_second;
     page.port = request.port;
   }
 
@@ -98,7 +97,7 @@ void Watch::Impl::ask() {
     if (shared->asked) return;
     shared->asked = true;
   }
-  run.live.post({{"do", "watch"}}, [shared = shared](const hal::Json&) {
+  run.watched.post({{"do", "watch"}}, [shared = shared](const hal::Json&) {
     const std::lock_guard hold(shared->lock);
     shared->asked = false;
     shared->changed.notify_all();
@@ -110,7 +109,7 @@ void Watch::Impl::post(hal::Json command) {
     const std::lock_guard hold(shared->lock);
     ++shared->commands;
   }
-  run.live.post(std::move(command), [shared = shared](const hal::Json& answer) {
+  run.watched.post(std::move(command), [shared = shared](const hal::Json& answer) {
     const std::lock_guard hold(shared->lock);
     --shared->commands;
     shared->note = answer.value("ok", false) ? std::string() : answer.value("error", std::string("it did not work"));
@@ -119,7 +118,7 @@ void Watch::Impl::post(hal::Json command) {
 }
 
 void Watch::Impl::take() {
-  const core::LiveState now = run.live.state();
+  const core::LiveState now = run.watched.state();
   const std::lock_guard hold(shared->lock);
   page.state = now;
   if (shared->commands == 0) {
@@ -313,23 +312,20 @@ hal::Status Watch::check(const WatchRequest& request, const core::Space& space) 
 }
 
 Watch::Watch(const WatchRequest& request, const Run& run) : impl_(std::make_unique<Impl>(request, run)) {
-  run.live.add_command("watch",
-                       [shared = impl_->shared, &world = run.world, real = run.real,
-                        eye = std::make_shared<WatchEye>()](const hal::Json&) -> hal::Result<hal::Json> {
-                         WatchWish wish;
-                         {
-                           const std::lock_guard hold(shared->lock);
-                           wish = shared->wish;
-                         }
-                         WatchMoment moment = eye->look(world, wish);
-                         if (real != nullptr) {
-                           moment.real = real->lines();
-                           moment.roll = real->roll_call();
-                         }
-                         const std::lock_guard hold(shared->lock);
-                         shared->moment = std::move(moment);
-                         return hal::Json::object();
-                       });
+  run.watched.add_command("watch",
+                          [shared = impl_->shared, sight = run.sight, add_real = run.add_real,
+                           eye = std::make_shared<WatchEye>()](const hal::Json&) -> hal::Result<hal::Json> {
+                            WatchWish wish;
+                            {
+                              const std::lock_guard hold(shared->lock);
+                              wish = shared->wish;
+                            }
+                            WatchMoment moment = eye->look(sight(), wish);
+                            if (add_real) add_real(moment);
+                            const std::lock_guard hold(shared->lock);
+                            shared->moment = std::move(moment);
+                            return hal::Json::object();
+                          });
   if (!Screen::possible()) {
     impl_->thread = std::thread([&impl = *impl_] { impl.work_in_lines(); });
     return;

@@ -1,14 +1,13 @@
-// `run --watch`: a live table of a run on a terminal, or lines where there is none.
+// `--watch`: a live table of a run, or of a record, on a terminal, or lines where there is none.
 #pragma once
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "app/run/real_side.hpp"
+#include "app/live/watch_page.hpp"
 #include "app/run_options.hpp"
 #include "core/live/live_run.hpp"
-#include "core/sim/world.hpp"
 #include "hal/result.hpp"
 
 namespace tandem::app {
@@ -18,11 +17,13 @@ namespace tandem::app {
 class Watch {
  public:
   struct Run {
-    core::LiveRun& live;
-    core::World& world;
-    std::int64_t ticks = 0;          ///< 0: no end of its own
-    RealRobots* real = nullptr;      ///< null: none take part
-    std::function<void()> end = {};  ///< ends the run in order; on any thread
+    core::Watched& watched;
+    std::function<WatchSight()> sight;  ///< as it is now; called where `watched` carries out commands
+    std::string experiment;
+    std::int64_t ticks = 0;  ///< 0: no end of its own
+    std::int64_t ticks_per_second = 10;
+    std::function<void(WatchMoment&)> add_real = {};  ///< what is told of real robots; empty: none take part
+    std::function<void()> end = {};                   ///< ends the run in order; on any thread
   };
   /// Errors: no robot fits; none of those that do has the port.
   static hal::Status check(const WatchRequest& request, const core::Space& space);

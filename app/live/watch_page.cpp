@@ -57,8 +57,11 @@ std::string robots_text(const WatchMoment& moment) {
   return all.empty() ? "no robots" : all;
 }
 
-std::string incidents_text(const core::Incidents& i) {
-  if (incidents_of(i) == 0) return "no incidents";
+/// "; no incidents"
+std::string incidents_text(const std::optional<core::Incidents>& counted) {
+  if (!counted) return {};
+  const core::Incidents& i = *counted;
+  if (incidents_of(i) == 0) return "; no incidents";
   std::string all;
   const auto add = [&all](std::uint64_t n, const char* what) {
     if (n > 0) all += fmt::format("{}{} {}", all.empty() ? "" : ", ", n, what);
@@ -67,7 +70,7 @@ std::string incidents_text(const core::Incidents& i) {
   add(i.bodies_escaped, "escaped");
   add(i.commands_not_finite, "commands not finite");
   add(i.commands_clamped, "commands clamped");
-  return "incidents: " + all;
+  return "; incidents: " + all;
 }
 
 std::size_t id_width(const WatchMoment& moment) {
@@ -151,11 +154,11 @@ const std::vector<core::RobotId>& WatchEye::chosen(const core::Space& space, con
   return chosen_;
 }
 
-WatchMoment WatchEye::look(const core::World& world, const WatchWish& wish) {
-  const core::Space& space = world.space();
+WatchMoment WatchEye::look(const WatchSight& now, const WatchWish& wish) {
+  const core::Space& space = now.space;
   WatchMoment moment;
-  const hal::TimeNs now_ns = hal::time_of_tick(world.tick(), world.ticks_per_second());
-  moment.incidents = world.incidents();
+  const hal::TimeNs now_ns = hal::time_of_tick(now.done, now.ticks_per_second);
+  moment.incidents = now.incidents;
   std::map<const hal::RobotKind*, std::size_t> kinds;
   for (std::size_t i = 0; i < space.robot_count(); ++i) ++kinds[&space.kind(space.robot(i))];
   std::map<std::string, std::size_t> by_name;  // robots with parts of their own have kinds of their own
@@ -219,7 +222,7 @@ std::string headline(const WatchPage& page) {
 }
 
 std::string summary(const WatchPage& page) {
-  std::string text = headline(page) + "; " + robots_text(page.moment) + "; " + incidents_text(page.moment.incidents);
+  std::string text = headline(page) + "; " + robots_text(page.moment) + incidents_text(page.moment.incidents);
   for (const std::string& line : roll_lines(page.moment.roll, 0)) text += "; " + printable(line);
   return text;
 }
@@ -233,8 +236,8 @@ std::vector<ScreenLine> lay_out(const WatchPage& page, Screen::Size size) {
   const Layout layout = layout_of(page, size);
   std::vector<ScreenLine> lines;
   lines.push_back({headline(page), LineLook::Title});
-  lines.push_back({robots_text(m) + "; " + incidents_text(m.incidents),
-                   incidents_of(m.incidents) > 0 ? LineLook::Bad : LineLook::Plain});
+  const bool bad = m.incidents && incidents_of(*m.incidents) > 0;
+  lines.push_back({robots_text(m) + incidents_text(m.incidents), bad ? LineLook::Bad : LineLook::Plain});
   lines.insert(lines.end(), layout.roll.begin(), layout.roll.end());
   for (std::size_t i = 0; i < layout.real; ++i)
     lines.push_back({m.real[i].text, m.real[i].drives ? LineLook::Plain : LineLook::Bad});

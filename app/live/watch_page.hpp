@@ -23,6 +23,14 @@ struct WatchWish {
   std::size_t rows = 20;            ///< robots, at most
 };
 
+/// What a moment is made of: of a run, or of the record of one.
+struct WatchSight {
+  const core::Space& space;
+  hal::Tick done = 0;  ///< ticks
+  std::int64_t ticks_per_second = 10;
+  std::optional<core::Incidents> incidents = {};  ///< nothing: nobody has counted them
+};
+
 /// One moment of a run as texts.
 struct WatchMoment {
   struct Robot {
@@ -34,7 +42,7 @@ struct WatchMoment {
     bool fresh = true;
   };
   std::vector<std::pair<std::string, std::size_t>> kinds;  ///< how many robots of each
-  core::Incidents incidents;
+  std::optional<core::Incidents> incidents;
   std::size_t chosen = 0;  ///< robots that the wish's patterns fit
   std::size_t first = 0;   ///< of `robots` among these
   std::vector<Robot> robots;
@@ -43,10 +51,10 @@ struct WatchMoment {
   std::vector<core::RollRow> roll;  ///< of the same robots
 };
 
-/// Finds what a wish asks for. Used by the thread that steps.
+/// Finds what a wish asks for. Used by the thread that steps what is watched.
 class WatchEye {
  public:
-  WatchMoment look(const core::World& world, const WatchWish& wish);
+  WatchMoment look(const WatchSight& now, const WatchWish& wish);
 
  private:
   const std::vector<core::RobotId>& chosen(const core::Space& space, const std::vector<std::string>& patterns);

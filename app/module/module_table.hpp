@@ -19,6 +19,7 @@ struct Module {
   std::span<const ModuleCommand> commands;       ///< in the order of help
   std::span<const std::string_view> categories;  ///< of entries that plug-ins may add when it is there
   std::span<const std::string_view> elements;    ///< of files that need it
+  std::span<const std::string_view> lists = {};  ///< what `tandem list` has more of when it is there
 };
 
 namespace module_table {
@@ -62,6 +63,9 @@ inline constexpr std::array<Word, 5> kRealCategories = {"bridge", "inspector", "
 inline constexpr std::array<Word, 1> kPictureCategories = {"layer"};
 inline constexpr std::array<Word, 4> kRealElements = {"bridge", "peer", "trackers", "footbot_map"};
 inline constexpr std::array<Word, 1> kStudyElements = {"study"};
+inline constexpr std::array<Word, 3> kRealLists = {"bridges", "emulators", "trackers"};
+inline constexpr std::array<Word, 1> kPictureLists = {"layers"};
+inline constexpr std::array<Word, 1> kStudyLists = {"elements"};
 inline constexpr std::array<Word, 3> kDynamicsEngines = {"dynamics2d", "dynamics3d", "particle3d"};
 inline constexpr std::array<Word, 4> kDynamicsElements = {"dynamics2d", "dynamics3d", "particle3d", "pointmass3d"};
 
@@ -71,11 +75,25 @@ inline constexpr std::array<Word, 4> kDynamicsElements = {"dynamics2d", "dynamic
 inline constexpr std::array<Module, 7> kModules = {
     {{"dynamics", "physics engines with forces", 1, {}, {}, {}, module_table::kDynamicsElements},
      {"live", "runs that people hold and watch", 1, {}, {}, {}, {}},
-     {"pictures", "pictures, films, layers", 1, {}, module_table::kPictures, module_table::kPictureCategories, {}},
+     {"pictures",
+      "pictures, films, layers",
+      1,
+      {},
+      module_table::kPictures,
+      module_table::kPictureCategories,
+      {},
+      module_table::kPictureLists},
      {"real", "real robots: bridges, trackers, their emulators", 4, module_table::kRealNeeds, module_table::kReal,
-      module_table::kRealCategories, module_table::kRealElements},
+      module_table::kRealCategories, module_table::kRealElements, module_table::kRealLists},
      {"window", "the page in the browser", 2, module_table::kOfWindow, module_table::kWindow, {}, {}},
-     {"study", "sweeps, tables, plots", 2, {}, module_table::kStudy, {}, module_table::kStudyElements},
+     {"study",
+      "sweeps, tables, plots",
+      2,
+      {},
+      module_table::kStudy,
+      {},
+      module_table::kStudyElements,
+      module_table::kStudyLists},
      {"lab", "fits, benchmarks, validation, checks of plug-ins", 5, module_table::kOfLab, module_table::kLab, {}, {}}}};
 
 /// What help says of a module's command. Its command type says the same.

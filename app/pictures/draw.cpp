@@ -5,13 +5,16 @@
 
 #include "app/command/command.hpp"
 #include "app/command/shared_options.hpp"
+#include "app/experiment/plugins.hpp"
 #include "app/module/module_table.hpp"
 #include "app/outputs/report.hpp"
 #include "app/pictures/pictures.hpp"
 #include "app/process/signals.hpp"
 #include "app/process/terminal.hpp"
+#include "core/view/layers/layer_set.hpp"
 #include "core/view/picture.hpp"
 #include "core/view/record_drawing.hpp"
+#include "hal/json/json_access.hpp"
 #include "hal/output_file.hpp"
 
 namespace tandem::app {
@@ -54,13 +57,45 @@ hal::Result<std::optional<hal::OutputFile>> open_file(const std::string& path, s
   return std::optional<hal::OutputFile>(std::move(file).value());
 }
 
-void tell_damage(const DrawOptions& options, const core::RecordSource& record) {
-  for (const std::string& line : record.moments().damage()) say("record '" + options.record + "': " + line);
+/// A record as it is drawn.
+struct Drawn {
+  std::unique_ptr<KindsOfFile> known;  // that its run knew
+  core::RecordSource record;
+  core::PictureLook look;
+  std::unique_ptr<core::LayerSet> layers;  // null: none
+
+  static hal::Result<Drawn> open(const std::string& path, const PictureRequest& request);
+  /// At every tick: for layers that depend on the past.
+  void note() {
+    if (layers != nullptr && record.ticks_done() > 0) layers->note(record.observation());
+  }
+  core::Drawing drawing(const core::Trails& trails) {
+    core::Drawing drawing = core::drawing_of(record, look, &trails);
+    if (layers != nullptr) draw_layers(*layers, record.observation(), drawing);
+    return drawing;
+  }
+  void tell_damage(const std::string& path) const {
+    for (const std::string& line : record.moments().damage()) say("record '" + path + "': " + line);
+  }
+};
+
+hal::Result<Drawn> Drawn::open(const std::string& path, const PictureRequest& request) {
+  auto reader = core::RecordReader::open(path);
+  if (!reader.ok()) return reader.error();
+  auto known = kinds_of_settings(hal::text_of(reader.value().start(), "settings"), path);
+  auto record = core::RecordSource::open(path, &known->catalog);
+  if (!record.ok()) return record.error();
+  auto look = look_of(request, core::arena_of(record.value().space()));
+  if (!look.ok()) return look.error();
+  auto layers = layers_of(request, known->catalog);
+  if (!layers.ok()) return layers.error();
+  return Drawn{std::move(known), std::move(record).value(), look.value(), std::move(layers).value()};
 }
 
 /// Goes to the tick that was asked for, and keeps trails on the way. Error: the record does not hold it; those beside
 /// it.
-hal::Status go_to(const DrawOptions& options, core::RecordSource& record, core::Trails& trails) {
+hal::Status go_to(const DrawOptions& options, Drawn& drawn, core::Trails& trails) {
+  core::RecordSource& record = drawn.record;
   trails.note(record.ticks_done(), record.space());
   std::optional<std::int64_t> before;
   while (!options.at || record.ticks_done() != *options.at) {
@@ -69,6 +104,7 @@ hal::Status go_to(const DrawOptions& options, core::RecordSource& record, core::
     if (!passed && record.next()) {
       before = here;
       if (trails.wants(record.ticks_done())) trails.note(record.ticks_done(), record.space());
+      drawn.note();
       continue;
     }
     if (!options.at) return {};
@@ -89,24 +125,22 @@ int draw_picture(const DrawOptions& options) {
                                          {"picture by POV-Ray", request.povray == scene ? "" : request.povray}},
                                         {{"record", options.record}});
   if (!apart.ok()) return complain(kBadInput, apart.error().message);
-  auto opened = core::RecordSource::open(options.record);
+  auto opened = Drawn::open(options.record, request);
   if (!opened.ok()) return complain(kBadInput, opened.error().message);
-  core::RecordSource& record = opened.value();
-  const auto look = look_of(request, core::arena_of(record.space()));
-  if (!look.ok()) return complain(kBadInput, look.error().message);
-  core::Trails trails(look.value().trails_s, record.ticks_per_second());
-  if (const hal::Status there = go_to(options, record, trails); !there.ok())
+  Drawn& drawn = opened.value();
+  core::Trails trails(drawn.look.trails_s, drawn.record.ticks_per_second());
+  if (const hal::Status there = go_to(options, drawn, trails); !there.ok())
     return complain(kBadInput, there.error().message);
   auto picture = open_file(request.picture, "picture");
   if (!picture.ok()) return complain(kBadInput, picture.error().message);
   auto scene_file = open_file(scene, "scene");
   if (!scene_file.ok()) return complain(kBadInput, scene_file.error().message);
 
-  const core::Drawing drawing = core::drawing_of(record, look.value(), &trails);
-  tell_damage(options, record);
+  const core::Drawing drawing = drawn.drawing(trails);
+  drawn.tell_damage(options.record);
   hal::Status done;
-  if (picture.value()) done = core::write_picture(drawing, *picture.value(), look.value());
-  if (done.ok() && scene_file.value()) done = write_scene(drawing, look.value(), *scene_file.value(), request.povray);
+  if (picture.value()) done = core::write_picture(drawing, *picture.value(), drawn.look);
+  if (done.ok() && scene_file.value()) done = write_scene(drawing, drawn.look, *scene_file.value(), request.povray);
   return done.ok() ? kDone : complain(kFailedRunning, done.error().message);
 }
 
@@ -126,20 +160,19 @@ int draw_film(const DrawOptions& options) {
   PictureRequest request = options.pictures;
   request.film_every = std::max(
       request.film_every, (ticks + frames / 2) / std::max<std::int64_t>(1, frames - 1));  // of a record of some ticks
-  auto opened = core::RecordSource::open(options.record);
+  auto opened = Drawn::open(options.record, request);
   if (!opened.ok()) return complain(kBadInput, opened.error().message);
-  core::RecordSource& record = opened.value();
-  const auto look = look_of(request, core::arena_of(record.space()));
-  if (!look.ok()) return complain(kBadInput, look.error().message);
-  auto made = Pictures::open(request, look.value(), record.ticks_per_second(), ticks, stop);
+  Drawn& drawn = opened.value();
+  core::RecordSource& record = drawn.record;
+  auto made = Pictures::open(request, drawn.look, record.ticks_per_second(), ticks, stop);
   if (!made.ok()) return complain(kBadInput, made.error().message);
   Pictures& pictures = *made.value();
   do {
     if (pictures.trails().wants(record.ticks_done())) pictures.note(record.ticks_done(), record.space());
-    if (pictures.wants(record.ticks_done()))
-      pictures.draw(record.ticks_done(), core::drawing_of(record, look.value(), &pictures.trails()));
+    drawn.note();
+    if (pictures.wants(record.ticks_done())) pictures.draw(record.ticks_done(), drawn.drawing(pictures.trails()));
   } while (!stop.load() && record.next());
-  tell_damage(options, record);
+  drawn.tell_damage(options.record);
   const bool good = pictures.close();
   if (stop.load()) return interrupted_code();
   return good ? kDone : kFailedRunning;

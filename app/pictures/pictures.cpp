@@ -96,6 +96,28 @@ std::string scene_of(const std::string& povray) {
   return std::filesystem::path(povray).replace_extension(".pov").string();
 }
 
+hal::Result<std::unique_ptr<core::LayerSet>> layers_of(const PictureRequest& request, const hal::Catalog& catalog) {
+  std::unique_ptr<core::LayerSet> layers;
+  if (request.layers.empty()) return layers;
+  if (request.picture.empty() && request.film.empty())
+    return hal::Error{"--picture-layers needs --picture or --film: what the layers are drawn over"};
+  layers = std::make_unique<core::LayerSet>(
+      catalog, hal::Log([](hal::Severity, std::string_view text) { complain(kFailedRunning, std::string(text)); }));
+  if (const hal::Status on = layers->switch_on(request.layers); !on.ok())
+    return hal::Error{"--picture-layers: " + on.error().message};
+  for (const std::size_t i : layers->on()) {
+    if (!layers->types()[i]->draws)
+      return hal::Error{"--picture-layers: the layer '" + std::string(layers->types()[i]->name) +
+                        "' has a panel alone; pictures show what layers draw"};
+  }
+  return layers;
+}
+
+void draw_layers(core::LayerSet& layers, const core::Observation& now, core::Drawing& drawing) {
+  for (const core::LayerPicture& layer : layers.show(now))
+    drawing.shapes.insert(drawing.shapes.end(), layer.sketch.shapes().begin(), layer.sketch.shapes().end());
+}
+
 hal::Status write_scene(const core::Drawing& drawing, const core::PictureLook& look, hal::OutputFile& file,
                         const std::string& povray) {
   hal::Status done = file.write(core::to_povray(drawing, look));

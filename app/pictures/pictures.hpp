@@ -7,7 +7,9 @@
 
 #include "app/run_options.hpp"
 #include "core/view/drawing.hpp"
+#include "core/view/layers/layer_set.hpp"
 #include "core/view/trails.hpp"
+#include "hal/catalog.hpp"
 #include "hal/output_file.hpp"
 #include "hal/result.hpp"
 
@@ -29,6 +31,11 @@ std::string scene_of(const std::string& povray);
 /// Writes the scene to `file`, commits it, and renders it where `povray` ends in .png.
 hal::Status write_scene(const core::Drawing& drawing, const core::PictureLook& look, hal::OutputFile& file,
                         const std::string& povray);
+
+/// The layers over pictures; null: none are asked for. Error: there is none of a name, or it draws nothing.
+hal::Result<std::unique_ptr<core::LayerSet>> layers_of(const PictureRequest& request, const hal::Catalog& catalog);
+/// Adds what they show.
+void draw_layers(core::LayerSet& layers, const core::Observation& now, core::Drawing& drawing);
 
 /// Draws on a thread of its own. Who hands over drawings waits when that is far behind: no frame is left out, until
 /// `stop` is set: then what is not drawn yet is left out, and the film ends there.

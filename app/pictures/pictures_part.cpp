@@ -15,22 +15,6 @@
 namespace tandem::app {
 namespace {
 
-/// The layers over pictures. Error: there is none of a name, or it draws nothing.
-hal::Result<std::unique_ptr<core::LayerSet>> layers_of(const PictureRequest& request, const hal::Catalog& catalog) {
-  if (request.picture.empty() && request.film.empty())
-    return hal::Error{"--picture-layers needs --picture or --film: what the layers are drawn over"};
-  auto layers = std::make_unique<core::LayerSet>(
-      catalog, hal::Log([](hal::Severity, std::string_view text) { complain(kFailedRunning, std::string(text)); }));
-  if (const hal::Status on = layers->switch_on(request.layers); !on.ok())
-    return hal::Error{"--picture-layers: " + on.error().message};
-  for (const std::size_t i : layers->on()) {
-    if (!layers->types()[i]->draws)
-      return hal::Error{"--picture-layers: the layer '" + std::string(layers->types()[i]->name) +
-                        "' has a panel alone; pictures show what layers draw"};
-  }
-  return layers;
-}
-
 /// Draws on the way and at the end.
 class Drawings final : public core::RunPart {
  public:
@@ -91,11 +75,9 @@ hal::Status Drawings::open() {
     if (!pictures.ok()) return pictures.error();
     pictures_ = std::move(pictures).value();
   }
-  if (!request.layers.empty()) {
-    auto layers = layers_of(request, plan_.loader.catalog());
-    if (!layers.ok()) return layers.error();
-    layers_ = std::move(layers).value();
-  }
+  auto layers = layers_of(request, plan_.loader.catalog());
+  if (!layers.ok()) return layers.error();
+  layers_ = std::move(layers).value();
   const std::string scene = request.povray.empty() ? std::string() : scene_of(request.povray);
   for (const auto& [what, path, file] :
        {std::tuple{"picture", &request.picture, &picture_}, std::tuple{"scene", &scene, &scene_}}) {
@@ -134,10 +116,8 @@ core::PictureOptions Drawings::picture_options() const {
 core::Drawing Drawings::drawing_of(const core::PictureOptions& options) const {
   core::Drawing drawing = core::drawing_of(world().space(), options);
   drawing.areas = core::areas_of(world().scenario().safety);
-  if (layers_ == nullptr) return drawing;
   const hal::Tick last = world().tick() == 0 ? 0 : world().tick() - 1;
-  for (const core::LayerPicture& layer : layers_->show(observation_of(world(), last)))
-    drawing.shapes.insert(drawing.shapes.end(), layer.sketch.shapes().begin(), layer.sketch.shapes().end());
+  if (layers_ != nullptr) draw_layers(*layers_, observation_of(world(), last), drawing);
   return drawing;
 }
 

@@ -42,6 +42,7 @@ class BridgedController final : hal::RobotLog::Sink {
   BridgedController(const BridgedController&) = delete;
   BridgedController& operator=(const BridgedController&) = delete;
 
+  void* memory() noexcept { return memory_; }
   /// Shows what people may change. @throws whatever the controller throws
   void controls(hal::Controls& controls) {
     if (type_.controls != nullptr) type_.controls(memory_, controls);

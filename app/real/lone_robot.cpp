@@ -25,6 +25,7 @@
 #include "app/real/hub_faults.hpp"
 #include "app/real/listed_robot.hpp"
 #include "app/real/robot_end.hpp"
+#include "app/real/robot_sinks.hpp"
 #include "app/run/time_parts.hpp"
 #include "core/run/run.hpp"
 #include "hal/output_file.hpp"
@@ -202,6 +203,7 @@ class LoneHub final : public core::Stepped {
   mixed_reality::MonotonicTime clock_;
   std::optional<mixed_reality::LoneRobot> lone_;  // outlives the controller
   std::unique_ptr<BridgedController> controller_;
+  std::unique_ptr<core::RunPart> sinks_;  // until the run has them
   std::optional<mixed_reality::Pacer> pacer_;
   std::optional<EmergencyReport> emergency_;
   hal::Tick ticks_ = 0;
@@ -250,8 +252,8 @@ int LoneHub::choose_robot() {
   if (!options_.link.empty()) item_.bridge->link = options_.link;
   request_ = mixed_reality::bridge_request(*scenario_, item_, scenario_->seed.value_or(1));
   if (request_.robot_kind == nullptr) request_.robot_kind = core::find_kind(*scenario_, loader_.catalog(), item_.kind);
-  const hal::Status apart =
-      check_apart({{"report", options_.report}}, input_files(loader_.catalog(), request_, *scenario_));
+  const hal::Status apart = check_apart({{"report", options_.report}, {"record", options_.record}},
+                                        input_files(loader_.catalog(), request_, *scenario_));
   if (!apart.ok()) return complain(kBadInput, apart.error().message);
   auto report = open_report(options_.report);
   if (!report.ok()) return complain(kBadInput, report.error().message);
@@ -275,8 +277,12 @@ int LoneHub::prepare() {
   auto read = read_file_controller(*scenario_, item_, item_.id, loader_);
   if (!read.ok()) return complain(kBadInput, read.error().message);
   file_ = std::move(read).value();
+  std::vector<std::pair<hal::PublishedField, const void*>> published;
   try {
     ListedRobot listed((*made)->robot(), *file_.config, loader_.catalog());
+    listed.on_show([&published](hal::PublishedField field, const void* member) {
+      published.emplace_back(std::move(field), member);
+    });
     controller_ = std::make_unique<BridgedController>(*file_.type, listed, file_.params.get(),
                                                       scenario_->ticks_per_second, log_, file_.who);
   } catch (const std::exception& e) {
@@ -290,6 +296,13 @@ int LoneHub::prepare() {
                 mixed_reality::RealRobotParams{.rearm = mixed_reality::rearm_params(*item_.bridge),
                                                .frozen_after_ns = tick_ns + kFrozenAfter_ns},
                 tick_ns, log_);
+  const ShownRobot shown{*scenario_,          item_, lone_->real().bridge(), *file_.type, controller_->memory(),
+                         std::move(published)};
+  sinks_ = robot_sinks(options_, shown, *lone_, [this] {
+    hal::Json json = report_so_far();
+    json["ended"] = RobotEnd{.failure = failure_, .interrupted = interrupted_}.word();
+    return json;
+  });
   return kDone;
 }
 
@@ -355,7 +368,8 @@ int LoneHub::drive() {
     core::Run run(*this, *stop_);
     run.add(std::make_unique<core::Length>(steps));
     run.add(std::make_unique<Driven>(*this));
-    run.add(progress_part(steps, scenario_->ticks_per_second));
+    run.add(std::move(sinks_));
+    if (!options_.watch.watch) run.add(progress_part(steps, scenario_->ticks_per_second));
     run.add(pace_part(*pacer_, &watchdog_->lock()));
     (void)run.go();
     if (failure_.empty()) failure_ = run.failure();
@@ -403,7 +417,10 @@ int drive_robot(const RobotOptions& options) {
 }
 
 int robot(const RobotOptions& options) {
-  return options.link.starts_with(kPeerScheme) ? robot_peer(options) : drive_robot(options);
+  if (!options.link.starts_with(kPeerScheme)) return drive_robot(options);
+  if (!options.record.empty() || options.watch.watch)
+    return complain(kWrongUsage, "--record and --watch are for the run of the simulation that this is a peer of");
+  return robot_peer(options);
 }
 
 }  // namespace
@@ -417,6 +434,7 @@ void RobotOptions::describe(hal::CommandLine& line) {
               "With peer:…: which robot of that simulation; '*': any that waits; default: the file's");
   line.option("--seconds", seconds, "How long, instead of the file's length").positive();
   line.option("--report", report, "Write a JSON report to this file ('-': standard output)").file();
+  describe_robot_sinks(line, *this);
   describe_step_timeout(line, step_timeout_s);
   describe_hub_faults(line, hub_faults, "A");
   describe_plugins(line, plugins);

@@ -16,6 +16,8 @@ struct RobotOptions {
   std::string link;
   std::optional<double> seconds;
   std::string report;
+  std::string record;  ///< empty: none
+  WatchRequest watch;
   std::vector<std::string> hub_faults;  ///< as `parse_hub_fault` reads them
   double step_timeout_s = 5.0;          ///< as for `run`
   std::string robot;                    ///< of a hub, whose peer this is; empty: the file's; "*": any that waits

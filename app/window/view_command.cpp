@@ -11,7 +11,7 @@ struct ViewLine : RunOptions {
   void describe(hal::CommandLine& line) {
     line.footer(
         "It begins in real time. All options but those of the window are those of `tandem run`; a record takes the "
-        "window's alone.");
+        "window's and those of --watch alone.");
     line.word("experiment", experiment, "The experiment file (.xml), or a record of `tandem run --record`")
         .required()
         .file();
@@ -25,8 +25,7 @@ struct ViewLine : RunOptions {
 
 int view(RunOptions options) {
   options.view.on = options.hold.stay = true;
-  if (is_record(options.experiment))
-    return view_record(options.experiment, options.view, options.hold, catch_signals());
+  if (is_record(options.experiment)) return view_record(options, catch_signals());
   if (!options.hold.speed) options.hold.speed = 1.0;
   return run(options);
 }

@@ -6,11 +6,15 @@
 #include <condition_variable>
 #include <deque>
 #include <fstream>
+#include <functional>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <utility>
 
 #include "app/experiment/plugins.hpp"
+#include "app/live/watch.hpp"
+#include "app/process/signals.hpp"
 #include "app/process/terminal.hpp"
 #include "app/window/source_view.hpp"
 #include "app/window/view_messages.hpp"
@@ -57,7 +61,7 @@ std::optional<std::size_t> row_of(const RecordRows& rows, const std::string& id)
 }
 
 /// Plays a record on one thread; others post commands.
-class RecordPlayer {
+class RecordPlayer final : public core::Watched {
  public:
   RecordPlayer(const std::string& path, RecordSource record, const hal::Catalog& catalog, window::Window& window,
                const HoldOptions& hold)
@@ -68,9 +72,19 @@ class RecordPlayer {
                 window_.tell(log_.entry(record_.ticks_done(), "log", text));
               })),
         paused_(hold.paused),
-        speed_(hold.speed.value_or(1.0)) {}
+        speed_(hold.speed.value_or(1.0)) {
+    publish();
+  }
 
   void run(const std::atomic<bool>& stop);
+
+  void post(Json command, window::WindowReply reply) override;
+  core::LiveState state() const override;
+  void add_command(std::string name, core::LiveCommand command) override {
+    added_[std::move(name)] = std::move(command);
+  }
+  /// On the thread that plays.
+  WatchSight sight() { return {record_.space(), record_.ticks_done(), record_.ticks_per_second()}; }
 
  private:
   struct Posted {
@@ -78,7 +92,6 @@ class RecordPlayer {
     window::WindowReply reply;
   };
   void greet();
-  void post(Json command, window::WindowReply reply);
   void carry_out_posted();
   Json carry_out(const Json& command);
   Json play(const Json& command);
@@ -90,6 +103,7 @@ class RecordPlayer {
   void begin_schedule();
   Clock::time_point due() const;
   void show(bool settled);
+  void publish();
   void tell_state();
   std::optional<hal::Tick> next_tick() const;
 
@@ -105,9 +119,11 @@ class RecordPlayer {
   std::int64_t steps_wanted_ = 0;
   Clock::time_point anchor_, state_told_;
   hal::Tick anchor_tick_ = 0;
-  std::mutex lock_;
+  std::map<std::string, core::LiveCommand, std::less<>> added_;
+  mutable std::mutex lock_;
   std::condition_variable changed_;
-  std::deque<Posted> posted_;
+  std::deque<Posted> posted_;  // with `lock_`, as the next
+  core::LiveState state_;
 };
 
 void RecordPlayer::greet() {
@@ -154,8 +170,15 @@ void RecordPlayer::carry_out_posted() {
       next = std::move(posted_.front());
       posted_.pop_front();
     }
-    const Json answer = carry_out(next.command);
-    show(true);
+    Json answer = here();
+    if (const auto added = added_.find(text_of(next.command, "do")); added != added_.end()) {
+      const hal::Result<Json> done = added->second(next.command);
+      if (!done.ok()) answer = refusal(done.error().message);
+    } else {
+      answer = carry_out(next.command);
+      publish();
+      show(true);
+    }
     if (next.reply) next.reply(answer);
   }
 }
@@ -292,6 +315,7 @@ void RecordPlayer::run(const std::atomic<bool>& stop) {
     carry_out_posted();
     if (!paused_ && !next_tick()) {
       paused_ = true;
+      publish();
       show(true);
     }
     Clock::time_point until = Clock::now() + kLook;
@@ -303,8 +327,10 @@ void RecordPlayer::run(const std::atomic<bool>& stop) {
     if (go) {
       const bool there_was = record_.next();
       if (there_was && view_.notes()) view_.note(record_.observation());
-      if (steps_wanted_ > 0 && (--steps_wanted_ == 0 || !there_was)) {
-        steps_wanted_ = 0;
+      const bool stepped = steps_wanted_ > 0 && (--steps_wanted_ == 0 || !there_was);
+      if (stepped) steps_wanted_ = 0;
+      publish();
+      if (stepped) {
         show(true);
       } else if (window_.wants_frame()) {
         show(false);
@@ -329,20 +355,29 @@ void RecordPlayer::show(bool settled) {
   if (settled || Clock::now() - state_told_ >= kStateEvery) tell_state();
 }
 
+core::LiveState RecordPlayer::state() const {
+  const std::lock_guard hold(lock_);
+  return state_;
+}
+
+/// Brings what others see up to date.
+void RecordPlayer::publish() {
+  const std::lock_guard hold(lock_);
+  state_.paused = paused_ && steps_wanted_ == 0;
+  state_.speed = speed_;
+  state_.reached = paused_ ? 0.0 : speed_.value_or(0.0);
+  state_.tick = record_.ticks_done();
+  state_.latest = moments_.ticks().back() + 1;
+  state_.first = moments_.ticks().front() + 1;
+  state_.seed = record_.seed();
+}
+
 void RecordPlayer::tell_state() {
   state_told_ = Clock::now();
-  const auto seed = moments_.start().find("seed");
-  window_.tell({{"type", "state"},
-                {"tick", moments_.tick() + 1},
-                {"latest", moments_.ticks().back() + 1},
-                {"first", moments_.ticks().front() + 1},
-                {"paused", paused_ && steps_wanted_ == 0},
-                {"speed", speed_ ? Json(*speed_) : Json()},
-                {"reached", paused_ ? 0.0 : speed_.value_or(0.0)},
-                {"ended", Json()},
-                {"stopped_by", Json()},
-                {"no_way_back", Json()},
-                {"seed", seed != moments_.start().end() ? *seed : Json()}});
+  publish();
+  Json message = {{"type", "state"}};
+  message.update(core::to_json(state()));
+  window_.tell(std::move(message));
 }
 
 }  // namespace
@@ -357,18 +392,32 @@ bool is_record(const std::string& path) {
          start.substr(0, kName) == core::kBlockFileStart.substr(0, kName);
 }
 
-int view_record(const std::string& path, const ViewRequest& request, const HoldOptions& hold,
-                const std::atomic<bool>& stop) {
+int view_record(const RunOptions& options, const std::atomic<bool>& stop) {
+  const std::string& path = options.experiment;
   auto start = core::RecordReader::open(path);
   if (!start.ok()) return complain(kBadInput, start.error().message);
   const auto known = kinds_of_settings(text_of(start.value().start(), "settings"), path);
   auto record = RecordSource::open(path, &known->catalog);
   if (!record.ok()) return complain(kBadInput, record.error().message);
   if (record.value().moments().cut()) say("record '" + path + "': it was cut; shown is what is there");
-  auto window = open_window(request);
+  if (const hal::Status fits = Watch::check(options.watch, record.value().space()); !fits.ok())
+    return complain(kBadInput, fits.error().message);
+  auto window = open_window(options.view);
   if (!window.ok()) return complain(kBadInput, window.error().message);
-  RecordPlayer player(path, std::move(record).value(), known->catalog, *window.value(), hold);
+  const std::string experiment = record.value().experiment();
+  const std::int64_t ticks_per_second = record.value().ticks_per_second();
+  RecordPlayer player(path, std::move(record).value(), known->catalog, *window.value(), options.hold);
+  std::optional<Watch> watch;
+  if (options.watch.watch)
+    watch.emplace(options.watch, Watch::Run{player,
+                                            [&player] { return player.sight(); },
+                                            experiment,
+                                            player.state().latest,
+                                            ticks_per_second,
+                                            {},
+                                            &request_stop});
   player.run(stop);
+  watch.reset();
   window.value().reset();  // its thread uses the player
   return kDone;
 }

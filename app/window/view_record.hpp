@@ -1,4 +1,5 @@
-// Shows a record to the viewers of a window: plays it, goes to any of its ticks, looks into what it holds.
+// Shows a record to the viewers of a window, and as a table on the terminal: plays it, goes to any of its ticks, looks
+// into what it holds.
 #pragma once
 #include <atomic>
 #include <string>
@@ -10,8 +11,8 @@ namespace tandem::app {
 /// Whether the file begins as a record does.
 bool is_record(const std::string& path);
 
-/// Until `stop`. @returns the exit code
-int view_record(const std::string& path, const ViewRequest& request, const HoldOptions& hold,
-                const std::atomic<bool>& stop);
+/// Of `options`, those of the window, the table and of who holds a run count; the record is the experiment. Until
+/// `stop`. @returns the exit code
+int view_record(const RunOptions& options, const std::atomic<bool>& stop);
 
 }  // namespace tandem::app

@@ -74,23 +74,35 @@ struct LiveState {
 /// As the message "state" of the protocol, without its type.
 hal::Json to_json(const LiveState& state);
 
-class LiveRun {
+/// What people watch and command while it goes on: a run, or the record of one.
+class Watched {
+ public:
+  virtual ~Watched() = default;
+  /// Has a command {"do": name, …} carried out between two ticks; on any thread. `reply` is called at most once: by the
+  /// thread that steps, or at once where the command is refused.
+  virtual void post(hal::Json command, LiveReply reply) = 0;
+  /// On any thread.
+  virtual LiveState state() const = 0;
+  /// Adds a command, or replaces one; before it begins.
+  virtual void add_command(std::string name, LiveCommand command) = 0;
+};
+
+class LiveRun final : public Watched {
  public:
   /// The world must outlive this.
   LiveRun(World& world, LiveOptions options);
-  ~LiveRun();
+  ~LiveRun() override;
   LiveRun(const LiveRun&) = delete;
   LiveRun& operator=(const LiveRun&) = delete;
 
   // --- on any thread ---
-  /// Has a command {"do": name, …} carried out between two ticks. `reply` is called exactly once: by the thread that
-  /// steps, or at once where the queue is full or the run is over.
-  void post(hal::Json command, LiveReply reply);
+  /// `reply` is called exactly once: at once where the queue is full or the run is over.
+  void post(hal::Json command, LiveReply reply) override;
   /// Has a function of this program called as a command is, at the latest by `close`; no command can name it.
   void post_own(std::function<void()> call);
   /// Ends the run before its next step, and any waiting.
   void stop();
-  LiveState state() const;
+  LiveState state() const override;
 
   // --- on the thread that steps ---
   /// After World::start: the first checkpoint.
@@ -105,8 +117,7 @@ class LiveRun {
   /// What is posted from now on is refused. The destructor does it, too.
   void close();
 
-  /// Adds a command, or replaces one; before the run.
-  void add_command(std::string name, LiveCommand command);
+  void add_command(std::string name, LiveCommand command) override;
   /// Called whenever something is to be shown that no new tick shows: after a touch, a tick that is done again, a way
   /// back; and once when the run comes to rest.
   void on_show(std::function<void()> show);

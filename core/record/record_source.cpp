@@ -5,7 +5,6 @@
 #include <cstring>
 #include <deque>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <unordered_map>
 #include <utility>
@@ -14,6 +13,7 @@
 #include "core/record/floor_image.hpp"
 #include "core/record/scene_json.hpp"
 #include "core/space/looks.hpp"
+#include "core/space/shown.hpp"
 #include "core/space/stores.hpp"
 #include "hal/controller.hpp"
 #include "hal/finite.hpp"
@@ -24,13 +24,6 @@ namespace tandem::core {
 namespace {
 
 using hal::Json;
-
-constexpr double kMostBetween_s = 1.0;  // of two places that tell a velocity
-constexpr hal::Tick kNever = -2;
-
-double angle_between(double from_rad, double to_rad) {
-  return std::remainder(to_rad - from_rad, 2.0 * std::numbers::pi);
-}
 
 /// A row in memory that has the fields of a stream, and refers to its texts.
 hal::PortType form_of(const RecordStream& stream) {
@@ -82,15 +75,13 @@ class Values {
   std::optional<std::size_t> field_;
 };
 
-struct Place {
-  double x_m = 0.0, y_m = 0.0, z_m = 0.0, heading_rad = 0.0;
-};
-
 /// Poses of a tick.
 class Poses {
  public:
   explicit Poses(const RecordRows& rows) : x_(rows, "x"), y_(rows, "y"), z_(rows, "z"), heading_(rows, "heading") {}
-  Place at(std::size_t row) const { return {x_.at(row), y_.at(row), z_.at(row), heading_.at(row)}; }
+  SeenPose at(std::size_t row, hal::Tick tick = SeenPose::kNever) const {
+    return {x_.at(row), y_.at(row), z_.at(row), heading_.at(row), tick};
+  }
 
  private:
   Values x_, y_, z_, heading_;
@@ -154,12 +145,12 @@ class RecordSource::Shown {
   std::deque<hal::ControllerType> controllers_;                                // names alone
   std::vector<std::pair<Json, std::unique_ptr<const hal::RobotKind>>> kinds_;  // and what there is to draw
   std::unordered_map<std::string, std::uint32_t> numbers_;                     // of robots that were seen
-  std::vector<std::pair<hal::Tick, Place>> was_;                               // by number
+  std::vector<SeenPose> was_;                                                  // by number
   std::unique_ptr<Space> space_;
   Tables known_;
   std::vector<Table> tables_;
   std::vector<std::size_t> body_of_;  // rows of bodies by rows of poses
-  hal::Tick shown_ = kNever;
+  hal::Tick shown_ = SeenPose::kNever;
   std::uint32_t spaces_ = 0;
   std::uint64_t scene_ = 0, floor_ = 0, sketch_ = 0;  // their numbers in the record
   std::shared_ptr<const FloorImage> image_;
@@ -305,7 +296,7 @@ void RecordSource::Shown::rebuild(const RecordMoments& moments) {
   s.names.resize(numbers_.size());
   for (const auto& [id, number] : numbers_) s.names[number] = {id, -1, number, 1};
   s.added_robots = numbers_;
-  was_.resize(numbers_.size(), {kNever, {}});
+  was_.resize(numbers_.size());
 
   std::map<std::pair<std::size_t, std::vector<std::size_t>>, std::vector<std::size_t>> groups;
   for (const std::size_t member : members.order) {
@@ -390,15 +381,10 @@ void RecordSource::Shown::make_block(const RecordMembers& members, const std::ve
       table.to[table.row_of.at(members.ids[who[slot]])] = rows + slot * stride;
   }
   for (std::size_t slot = 0; slot < count; ++slot) {
-    const std::size_t member = who[slot], row = block.first_row + slot;
-    const std::uint32_t robot = number_of(members.ids[member]);
-    body_of_[member] = row;
-    s.robots[robot] = {0, static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(slot), robot, -1, true};
-    s.bodies.entity[row] = robot;
-    s.bodies.radius_m[row] = static_cast<float>(s.groups.back().kind->body.radius_m);
-    s.bodies.flags[row] = members.real[member] ? kAlive | kExternal : kAlive;
-    s.bodies.region[row] = 0;
-    s.twins = s.twins || members.real[member];
+    const std::size_t member = who[slot];
+    body_of_[member] = block.first_row + slot;
+    show_robot(s, number_of(members.ids[member]),
+               {static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(slot)}, members.real[member]);
   }
 }
 
@@ -437,22 +423,7 @@ void RecordSource::Shown::take_poses(const RecordMoments& moments) {
   const Poses poses(moments.poses());
   for (std::size_t i = 0; i < body_of_.size(); ++i) {
     const std::size_t row = body_of_[i];
-    const Place now = poses.at(i);
-    b.x_m[row] = now.x_m;
-    b.y_m[row] = now.y_m;
-    b.cos_h[row] = std::cos(now.heading_rad);
-    b.sin_h[row] = std::sin(now.heading_rad);
-    Motion& motion = b.motion[row];
-    motion = {now.z_m, {std::cos(0.5 * now.heading_rad), 0.0, 0.0, std::sin(0.5 * now.heading_rad)}, {}, {}};
-    auto& [tick, was] = was_[b.entity[row]];
-    const double passed_s =
-        static_cast<double>(moments.tick() - tick) / static_cast<double>(moments.ticks_per_second());
-    if (tick != kNever && passed_s > 0.0 && passed_s <= kMostBetween_s) {
-      motion.v_m_s = {(now.x_m - was.x_m) / passed_s, (now.y_m - was.y_m) / passed_s, (now.z_m - was.z_m) / passed_s};
-      motion.w_rad_s = {0.0, 0.0, angle_between(was.heading_rad, now.heading_rad) / passed_s};
-    }
-    tick = moments.tick();
-    was = now;
+    show_body(s, row, poses.at(i, moments.tick()), moments.ticks_per_second(), was_[b.entity[row]]);
   }
   const RecordRows* const attitudes = moments.rows("attitude");
   if (attitudes == nullptr) return;
@@ -501,7 +472,7 @@ void RecordSource::Shown::take_objects(const RecordMoments& moments) {
     }
   };
   each("object pose", [&](const RecordRows& rows, std::size_t row, std::uint32_t number) {
-    const Place at = Poses(rows).at(row);
+    const SeenPose at = Poses(rows).at(row);
     Object& o = s.objects[number];
     o.z_high_m += at.z_m - o.z_low_m;
     o.x_m = at.x_m;

@@ -83,6 +83,13 @@ TEST_F(Modules, ThatAreMissingAreNamedWithWhatWouldBuildThem) {
   folder_.write("typo.xml",
                 "<tandem><arena size=\"4,4,1\"/><physics_engines><dynamic2d id=\"d\"/></physics_engines></tandem>");
   EXPECT_THAT(run("list engines").text, AllOf(HasSubstr("kinematics2d"), HasSubstr("dynamics3d; NOT BUILT")));
+  const std::vector<std::pair<std::string, std::string>> lists = {
+      {"bridges", "real"}, {"trackers", "real"}, {"layers", "pictures"}, {"elements", "study"}};
+  for (const auto& [kind, module] : lists)
+    EXPECT_THAT(run("list " + kind).text, HasSubstr(kind + " of the module '" + module + "'"));
+  EXPECT_THAT(run("list controllers").text,
+              AllOf(HasSubstr("\n  epuck_diffusion"), HasSubstr("NOT BUILT, until a file names them: "),
+                    HasSubstr("footbot_foraging"), Not(HasSubstr(", epuck_diffusion"))));
   EXPECT_THAT(run("describe dynamics3d").text, HasSubstr("module 'dynamics'"));
   EXPECT_THAT(run("check typo.xml").text, HasSubstr("Did you mean 'dynamics2d'?")) << "it is known before it is there";
 }
@@ -95,6 +102,9 @@ TEST_F(Modules, AreListedAndTheirCommandsAreInHelpWhetherTheyAreBuiltOrNot) {
   const Ended all = run("list modules");
   EXPECT_THAT(all.text, AllOf(HasSubstr("lab"), Not(HasSubstr("NOT BUILT")), Not(HasSubstr("warning"))))
       << "all load, beside one another";
+  for (const char* kind : {"emulators", "bridges", "trackers", "layers", "elements"})
+    EXPECT_THAT(run(std::string("list ") + kind).text, AllOf(HasSubstr(":\n  "), Not(HasSubstr("of the module"))))
+        << "it is of the table of modules";
   EXPECT_THAT(run("list emulators").text, HasSubstr("footbot"));
 }
 

@@ -96,7 +96,8 @@ TEST(Pictures, ShowTheLayersThatAreAskedFor) {
 TEST(Pictures, OfARecordAreThoseOfTheRun) {
   Folder folder;
   for (const char* file : {"epuck_diffusion.xml", "footbot_synchronization.xml", "footbot_safety.xml"}) {
-    const std::vector<std::string> look = {"--picture-ids", "--picture-axes", "--picture-trails", "1"};
+    const std::vector<std::string> look = {"--picture-ids",    "--picture-axes",        "--picture-trails", "1",
+                                           "--picture-layers", "proximity,light,trails"};
     std::vector<std::string> run = {"run",       kConfigs + file, "--seconds",     "3",  "--quiet",
                                     "--picture", "end.svg",       "--picture-at",  "17", "--record",
                                     "r",         "--set",         "record.ports=*"};
@@ -118,6 +119,7 @@ TEST(Pictures, OfARecordAreThoseOfTheRun) {
                              "<polygon", "dock: 0.05 m/s"})
       EXPECT_EQ(parts("again.svg", part), parts("end-000017.svg", part)) << part << " of " << file;
     EXPECT_EQ(parts("again.svg", "<polygon"), areas ? 3U : 0U);
+    EXPECT_GT(parts("again.svg", "<polyline"), areas ? 0U : 40U) << "layers, too";
     output_of(folder, {"picture", "r", "--at", "17", "--povray", "scene.pov"});
     EXPECT_EQ(parts("scene.pov", "dock: 0.05 m/s"), areas ? 1U : 0U);
     EXPECT_EQ(parts("scene.pov", "transmit 0.8"), areas ? 2U : 0U) << "the keep-out and the zone are tinted";

@@ -162,6 +162,19 @@ TEST(Records, ChangeNoBitOfTheRun) {
   }
 }
 
+TEST(Records, KeepTheReportOfTheirRun) {
+  Folder folder;
+  output_of(folder, {"run", kConfigs + "epuck_diffusion.xml", "--seconds", "3", "--record", "r", "--report", "a.json"});
+  output_of(folder, {"export", "r", "--report", "b.json"});
+  const std::string of_run = text_of(folder.path() / "a.json"), of_record = text_of(folder.path() / "b.json");
+  for (const char* name : {"experiment", "ended", "state_hash", "seed"})
+    EXPECT_EQ(json_value(of_record, name), json_value(of_run, name)) << name;
+  std::string bytes = text_of(folder.path() / "r");
+  folder.write("cut", bytes.substr(0, bytes.size() / 2));
+  EXPECT_NE(output_of(folder, {"export", "cut", "--report", "b.json"}, 1).find("has no end"), std::string::npos);
+  EXPECT_EQ(text_of(folder.path() / "b.json"), of_record);
+}
+
 TEST(Records, OfAKilledRunAreReadable) {
   Folder folder;
   Tandem run({"run", kConfigs + "epuck_diffusion.xml", "--set", "framework.experiment.length=0", "--set",

@@ -76,6 +76,33 @@ TEST(Watch, KeysHoldTheRunStepItAndSetItsSpeed) {
   EXPECT_EQ(run.wait(), 0);
 }
 
+TEST(Watch, ShowsARecordAsItShowsARun) {
+  Folder folder;
+  Tandem run({"run", kExperiment, "--seconds", "5", "--record", "r.record", "--set", "record.ports=proximity"},
+             folder.path());
+  ASSERT_EQ(run.wait(), 0) << run.errors();
+  OnTerminal record({"view", "r.record", "--watch", "--watch-port", "proximity", "--no-browser", "--paused"},
+                    folder.path());
+  ASSERT_TRUE(record.shows({"tick 0  paused", "50 e-puck", "ep0", "no reading", "space pause"}))
+      << record.screen.text() << record.screen.before;
+  EXPECT_THAT(record.screen.text(), Not(HasSubstr("incidents"))) << "nobody has counted them";
+  record.type("..");
+  EXPECT_TRUE(record.shows({"tick 2  paused", "range"})) << record.screen.text();
+  EXPECT_THAT(record.screen.text(), Not(HasSubstr("no reading")));
+  record.type("/ep7\r");
+  EXPECT_TRUE(
+      eventually([&] { return tick_on(record) == 2 && record.screen.text().find("ep0 ") == std::string::npos; }, 20.0))
+      << record.screen.text();
+  record.type(" ");
+  EXPECT_TRUE(record.shows({"tick 50  paused"})) << record.screen.text() << "at its end";
+  record.type("q");
+  EXPECT_EQ(record.wait(), 0);
+  EXPECT_TRUE(record.restored());
+  Tandem wrong({"view", "r.record", "--watch", "--watch-robots", "gina", "--no-browser"}, folder.path());
+  EXPECT_EQ(wrong.wait(), 1);
+  EXPECT_THAT(wrong.errors(), HasSubstr("no robot fits 'gina'"));
+}
+
 TEST(Watch, RobotsAndPortsAreChosenWhileItIsPausedToo) {
   Folder folder;
   OnTerminal run(endless({"--watch-robots", "ep1,ep2*", "--watch-port", "proximity"}), folder.path(), 160);

@@ -108,6 +108,29 @@ TEST_P(EndsStopped, OnSignalsInAMixedRun) {
 
 INSTANTIATE_TEST_SUITE_P(Signals, EndsStopped, testing::Values(SIGINT, SIGTERM));
 
+TEST(Robot, IsRecordedAndWatchedLikeARun) {
+  Folder folder;
+  EmulatedEpuck epuck(folder);
+  ASSERT_TRUE(epuck.ready());
+  Tandem robot({"robot", kConfigs + "epuck_robot.xml", "--seconds", "3", "--record", "r.record", "--watch"},
+               folder.path());
+  ASSERT_EQ(robot.wait(), 0) << robot.errors();
+  EXPECT_THAT(robot.errors(), testing::ContainsRegex("t = [1-9].* 1 e-puck"));
+  EXPECT_FALSE(epuck.moves());
+
+  Tandem contents({"export", "r.record"}, folder.path());
+  ASSERT_EQ(contents.wait(), 0) << contents.errors();
+  for (const char* table : {"'pose': ticks 0 to 29, 30 of them, 1 rows", "'sensor proximity'",
+                            "'actuator differential_steering'", "'sensor wheel_encoders'", "length"})
+    EXPECT_THAT(contents.output(), testing::HasSubstr(table));
+  Tandem table({"export", "r.record", "--csv", "poses.csv", "--from", "29"}, folder.path());
+  ASSERT_EQ(table.wait(), 0) << table.errors();
+  EXPECT_THAT(text_of(folder.path() / "poses.csv"), testing::Not(testing::HasSubstr("ep0,0.000000,0.000000,")))
+      << "its wheels say where it went";
+  Tandem picture({"picture", "r.record", "-o", "p.svg"}, folder.path());
+  EXPECT_EQ(picture.wait(), 0) << picture.errors();
+}
+
 TEST(Robot, IsStoppedWhenTheHubIsKilled) {
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"robot", kConfigs + "epuck_robot.xml"}, {"run", kConfigs + "epuck_mixed.xml"}}) {

@@ -1,0 +1,147 @@
+#include "app/real/robot_sinks.hpp"
+
+#include <deque>
+#include <fmt/format.h>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "app/build_info.hpp"
+#include "app/command/shared_options.hpp"
+#include "app/live/watch.hpp"
+#include "app/process/signals.hpp"
+#include "app/process/terminal.hpp"
+#include "app/real/robot_space.hpp"
+#include "core/record/record.hpp"
+#include "hal/json/json_access.hpp"
+#include "hal/xml/xml.hpp"
+#include "mixed_reality/safety/lone_robot.hpp"
+#include "mixed_reality/time/monotonic.hpp"
+
+namespace tandem::app {
+namespace {
+
+/// What the table asks is answered after a tick; nobody else commands a robot here.
+class Asked final : public core::Watched {
+ public:
+  void post(hal::Json command, core::LiveReply reply) override {
+    const std::lock_guard hold(lock_);
+    if (hal::text_of(command, "do") == "watch") return posted_.push_back(std::move(reply));
+    reply({{"ok", false}, {"error", "a real robot drives, and its time has one speed; q ends the run, and stops it"}});
+  }
+  core::LiveState state() const override {
+    const std::lock_guard hold(lock_);
+    return state_;
+  }
+  void add_command(std::string, core::LiveCommand command) override { watch_ = std::move(command); }
+
+  /// After a tick.
+  void answer(hal::Tick done) {
+    std::deque<core::LiveReply> asked;
+    {
+      const std::lock_guard hold(lock_);
+      asked.swap(posted_);
+      state_.tick = state_.latest = state_.first = done;
+      state_.speed = state_.reached = 1.0;
+    }
+    for (const core::LiveReply& reply : asked) {
+      (void)watch_({});
+      reply({{"ok", true}});
+    }
+  }
+
+ private:
+  core::LiveCommand watch_;
+  mutable std::mutex lock_;
+  std::deque<core::LiveReply> posted_;
+  core::LiveState state_;
+};
+
+class RobotSinks final : public core::RunPart {
+ public:
+  RobotSinks(const RobotOptions& options, const ShownRobot& shown, const mixed_reality::LoneRobot& lone,
+             std::function<hal::Json()> end)
+      : options_(options), scenario_(shown.scenario), lone_(lone), space_(shown), end_(std::move(end)) {}
+  std::string_view name() const override { return "sinks"; }
+  core::RunTurn turn() const override { return core::RunTurn::Outputs; }
+
+  hal::Status join(core::Run&) override {
+    if (!options_.record.empty()) {
+      auto opened = core::Recorder::open(record_config(), space_.space(), start_of_record());
+      if (!opened.ok()) return opened.error();
+      record_ = std::move(opened).value();
+    }
+    if (!options_.watch.watch) return {};
+    if (hal::Status fits = Watch::check(options_.watch, space_.space()); !fits.ok()) return fits;
+    watch_.emplace(options_.watch,
+                   Watch::Run{asked_, [this] { return sight(); }, scenario_.name, 0, scenario_.ticks_per_second,
+                              [this](WatchMoment& m) { add_robot(m); }, &request_stop});
+    return {};
+  }
+  bool after_tick(core::Run& run) override {
+    done_ = run.tick_count();
+    space_.take(done_ - 1, clock_.now_ns(), lone_.real().verdict().may_drive);
+    if (record_ != nullptr && kept_.ok()) {
+      kept_ = record_->tick_done(space_.space(), done_ - 1);
+      if (!kept_.ok()) run.fail(kept_.error().message);
+    }
+    asked_.answer(done_);
+    return true;
+  }
+  hal::Status close(core::Run&) override {
+    watch_.reset();
+    return record_ != nullptr && kept_.ok() ? record_->close(done_ - 1, end_()) : hal::Status();
+  }
+
+ private:
+  /// As the file says, with all ports where it names none.
+  core::RecordConfig record_config() const {
+    core::RecordConfig config = scenario_.record;
+    config.path = options_.record;
+    config.entities = {"*"};
+    if (config.ports.empty()) config.ports = {"*"};
+    return config;
+  }
+  hal::Json start_of_record() const {
+    return {{"experiment", scenario_.name},
+            {"seed", scenario_.seed.value_or(1)},
+            {"ticks_per_second", scenario_.ticks_per_second},
+            {"program", to_json(build_info())},
+            {"settings", hal::to_xml(scenario_.effective)}};
+  }
+  WatchSight sight() const { return {space_.space(), done_, scenario_.ticks_per_second}; }
+  void add_robot(WatchMoment& moment) const {
+    const std::string reason = lone_.reason();
+    const bool drives = lone_.real().verdict().may_drive;
+    moment.real.push_back(
+        {fmt::format("{}: {}", lone_.real().bridge().identity().link, drives ? "drives" : reason), drives});
+  }
+
+  const RobotOptions& options_;
+  const core::Scenario& scenario_;
+  const mixed_reality::LoneRobot& lone_;
+  RobotSpace space_;
+  std::function<hal::Json()> end_;
+  mixed_reality::MonotonicTime clock_;
+  hal::Tick done_ = 0;
+  std::unique_ptr<core::Recorder> record_;
+  hal::Status kept_;
+  Asked asked_;
+  std::optional<Watch> watch_;
+};
+
+}  // namespace
+
+void describe_robot_sinks(hal::CommandLine& line, RobotOptions& options) {
+  line.option("--record", options.record, "Write a record: poses by wheels or the robot's own word, ports, state")
+      .file();
+  describe_watch(line, options.watch);
+}
+
+std::unique_ptr<core::RunPart> robot_sinks(const RobotOptions& options, const ShownRobot& shown,
+                                           const mixed_reality::LoneRobot& lone, std::function<hal::Json()> end) {
+  if (options.record.empty() && !options.watch.watch) return nullptr;
+  return std::make_unique<RobotSinks>(options, shown, lone, std::move(end));
+}
+
+}  // namespace tandem::app
