@@ -14,25 +14,8 @@ namespace tandem::python {
 namespace {
 
 const char* type_of(hal::Scalar scalar) {
-  switch (scalar) {
-    case hal::Scalar::F32:
-      return "float32";
-    case hal::Scalar::F64:
-      return "float64";
-    case hal::Scalar::U8:
-      return "uint8";
-    case hal::Scalar::U16:
-      return "uint16";
-    case hal::Scalar::U32:
-      return "uint32";
-    case hal::Scalar::I32:
-      return "int32";
-    case hal::Scalar::I64:
-      return "int64";
-    case hal::Scalar::Bool:
-      return "bool";
-  }
-  return "float64";
+  static constexpr const char* kNames[] = {"float32", "float64", "uint8", "uint16", "uint32", "int32", "int64", "bool"};
+  return kNames[static_cast<std::size_t>(scalar)];
 }
 
 /// Every port, as its schema describes it: for stubs, documentation and environments.

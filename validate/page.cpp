@@ -7,17 +7,8 @@
 namespace tandem::validate {
 
 const char* word_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::Met:
-      return "met";
-    case Verdict::NotMet:
-      return "not met";
-    case Verdict::NotMade:
-      return "not made";
-    case Verdict::Told:
-      break;
-  }
-  return "";
+  static constexpr const char* kWords[] = {"", "met", "not met", "not made"};
+  return kWords[static_cast<std::size_t>(verdict)];
 }
 
 namespace {

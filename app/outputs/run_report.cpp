@@ -20,19 +20,8 @@ namespace {
 using hal::text_of;
 
 std::string_view word_of(Ended how) {
-  switch (how) {
-    case Ended::Length:
-      return "length";
-    case Ended::Hook:
-      return "hook";
-    case Ended::Part:
-      return "part";
-    case Ended::Interrupted:
-      return "interrupted";
-    case Ended::Failed:
-      break;
-  }
-  return "failed";
+  static constexpr std::string_view kWords[] = {"length", "hook", "part", "interrupted", "failed"};
+  return kWords[static_cast<std::size_t>(how)];
 }
 
 /// "interrupted at tick 4006 of 200000, not finished"; empty where there is nothing to tell.

@@ -22,19 +22,9 @@ bool in_foreground() noexcept {
 }
 
 std::string_view begin_of(LineLook look, bool colors) noexcept {
-  switch (look) {
-    case LineLook::Plain:
-      return "";
-    case LineLook::Bold:
-      return "\033[1m";
-    case LineLook::Faint:
-      return "\033[2m";
-    case LineLook::Bad:
-      return colors ? "\033[31m" : "\033[1m";
-    case LineLook::Title:
-      return "\033[7m";
-  }
-  return "";
+  static constexpr std::string_view kBegins[] = {"", "\033[1m", "\033[2m", "\033[31m", "\033[7m"};
+  if (look == LineLook::Bad && !colors) look = LineLook::Bold;
+  return kBegins[static_cast<std::size_t>(look)];
 }
 
 bool begins_character(char c) noexcept {

@@ -4,6 +4,7 @@
 #include "hal/json/json.hpp"
 #include "mixed_reality/session/robot_ledger.hpp"
 #include "mixed_reality/time/system_clock.hpp"
+#include "mixed_reality/tracking/pose_source.hpp"
 
 namespace tandem::app {
 
@@ -41,6 +42,18 @@ inline hal::Json ledger_json(const mixed_reality::RobotLedger& l) {
                     {"jitter_ms", to_ms(l.jitter_ns)}};
   if (l.clock) json["clock"] = clock_json(*l.clock);
   return json;
+}
+
+/// What trackers saw of a robot.
+inline hal::Json sightings_json(const mixed_reality::PoseCounts& c) {
+  return {{"used", c.used},
+          {"gated", c.gated},
+          {"late", c.late},
+          {"doubled", c.doubled},
+          {"impossible", c.impossible},
+          {"disputed", c.disputed},
+          {"jumps", c.jumps},
+          {"slips", c.slips}};
 }
 
 inline hal::Json system_clock_json(const mixed_reality::SystemClock& clock) {

@@ -28,16 +28,7 @@ std::string ledger_text(const mixed_reality::RobotLedger& l) {
 void add_pose(hal::Json& robot, const mixed_reality::RealRobotReport& r) {
   robot["pose_source"] = r.pose_source;
   robot["poses_rejected"] = r.poses_rejected;
-  if (r.sightings) {
-    robot["sightings"] = {{"used", r.sightings->used},
-                          {"gated", r.sightings->gated},
-                          {"late", r.sightings->late},
-                          {"doubled", r.sightings->doubled},
-                          {"impossible", r.sightings->impossible},
-                          {"disputed", r.sightings->disputed},
-                          {"jumps", r.sightings->jumps},
-                          {"slips", r.sightings->slips}};
-  }
+  if (r.sightings) robot["sightings"] = sightings_json(*r.sightings);
   if (r.learnt) {
     robot["learnt"] = {{"left_wheel", r.learnt->left},          {"right_wheel", r.learnt->right},
                        {"wheel_base", r.learnt->base},          {"gyroscope_bias_rad_s", r.learnt->bias_rad_s},
@@ -127,9 +118,9 @@ hal::Json report_json(const mixed_reality::MixedReport& report) {
                                     {"by_machine", m.by_machine}});
   }
   pace["skipped_slots"] = report.pace.skipped_slots;
-  pace["largest_lateness_ms"] = static_cast<double>(report.pace.largest_lateness_ns) * 1e-6;
-  pace["wake_up_p99_ms"] = static_cast<double>(report.pace.wake_up.quantile_ns(0.99)) * 1e-6;
-  pace["step_p99_ms"] = static_cast<double>(report.pace.step.quantile_ns(0.99)) * 1e-6;
+  pace["largest_lateness_ms"] = to_ms(report.pace.largest_lateness_ns);
+  pace["wake_up_p99_ms"] = to_ms(report.pace.wake_up.quantile_ns(0.99));
+  pace["step_p99_ms"] = to_ms(report.pace.step.quantile_ns(0.99));
   json["system_clock"] = system_clock_json(report.clock);
   return json;
 }

@@ -15,17 +15,8 @@ namespace {
 using hal::Json;
 
 const char* name_of(bridges::LinkHealth health) noexcept {
-  switch (health) {
-    case bridges::LinkHealth::Connecting:
-      return "connecting";
-    case bridges::LinkHealth::Active:
-      return "active";
-    case bridges::LinkHealth::Suspect:
-      return "suspect";
-    case bridges::LinkHealth::Lost:
-      return "lost";
-  }
-  return "";
+  static constexpr const char* kNames[] = {"connecting", "active", "suspect", "lost"};
+  return kNames[static_cast<std::size_t>(health)];
 }
 
 /// Null: not known.
@@ -63,17 +54,7 @@ Json status_json(const mixed_reality::RealRobotStatus& robot) {
     if (place.sd_rad) source["sd_heading"] = *place.sd_rad;
     json["sources"].push_back(std::move(source));
   }
-  if (robot.sightings) {
-    const mixed_reality::PoseCounts& c = *robot.sightings;
-    json["sightings"] = {{"used", c.used},
-                         {"gated", c.gated},
-                         {"late", c.late},
-                         {"doubled", c.doubled},
-                         {"impossible", c.impossible},
-                         {"disputed", c.disputed},
-                         {"jumps", c.jumps},
-                         {"slips", c.slips}};
-  }
+  if (robot.sightings) json["sightings"] = sightings_json(*robot.sightings);
   return json;
 }
 

@@ -126,12 +126,7 @@ core::Observation RunView::observation() const {
 void RunView::tick_done() {
   tick_.store(run_.world.tick(), std::memory_order_relaxed);
   if (view_.notes()) view_.note(observation());
-  tell_incidents();
-  if (window_->wants_frame()) {
-    refresh(false);
-  } else if (window_->watched() && Clock::now() - state_told_ >= kStateEvery) {
-    tell_state(false);
-  }
+  stand();
 }
 
 void RunView::stand() {
