@@ -23,9 +23,8 @@ endfunction()
 # tandem_library(SOURCES a.cpp … DEPS hal core/space … EXTERNAL fmt::fmt … INCLUDES fmt …)
 # One folder = one static library. DEPS are folders, and the only ones whose headers may be included.
 # EXTERNAL are third-party CMake targets or link names. A folder that no tick waits for sets TANDEM_OUTSIDE_THE_TICK for itself
-# and those in it, to tandem_quick_build: it is optimised less, and built in two thirds of the time. Where TANDEM_COMPILED_TOGETHER
-# is set, six sources are compiled at once, for most of what they cost is headers: names in their unnamed namespaces must differ.
-# HEADERS: what most of its files include and takes long to parse; parsed once for the folder, on top of what all folders share.
+# and those in it, to tandem_quick_build: it is optimised less, and built in two thirds of the time. HEADERS: what most of its
+# files include and takes long to parse; parsed once for the folder, on top of what all folders share.
 function(tandem_library)
   cmake_parse_arguments(arg "" "" "SOURCES;DEPS;EXTERNAL;HEADERS" ${ARGN})
   tandem_folder_of(folder)
@@ -35,9 +34,6 @@ function(tandem_library)
     set(scope PUBLIC)
     target_link_libraries(${target} PRIVATE tandem_flags)
     target_compile_options(${target} PRIVATE ${TANDEM_OUTSIDE_THE_TICK})
-    if(TANDEM_COMPILED_TOGETHER AND NOT TANDEM_BOARD)
-      set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
-    endif()
     if(arg_HEADERS)
       target_precompile_headers(${target} PRIVATE ${tandem_shared_headers} ${arg_HEADERS})
       tandem_describe_pch(${target} ${tandem_shared_headers} ${arg_HEADERS})

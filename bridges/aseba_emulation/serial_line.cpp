@@ -7,7 +7,7 @@
 namespace tandem::bridges::aseba_emulation {
 namespace {
 
-constexpr std::size_t kMostKept = 64 * 1024;  // bytes that the robot can keep
+constexpr std::size_t kMostUnsent = 64 * 1024;  // bytes that the robot can keep
 
 /// The byte stream on a serial line, as USB shows the robot's. Where a host has said what no message is, everything up
 /// to a pause is forgotten.
@@ -36,7 +36,7 @@ class SerialLine final : public HostLine {
 
   void tell(const Message& message, hal::TimeNs now) override {
     const std::vector<std::uint8_t> bytes = to_bytes(message);
-    if (unsent_.size() + bytes.size() > kMostKept) {  // a host that does not read loses the newest
+    if (unsent_.size() + bytes.size() > kMostUnsent) {  // a host that does not read loses the newest
       sink_(now, "overflow", {{"bytes", bytes.size()}});
       return;
     }

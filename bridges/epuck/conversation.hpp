@@ -31,9 +31,6 @@ enum class SessionState : std::uint8_t {
 };
 const char* state_name(SessionState state) noexcept;
 
-/// Most that one answer is given for stalls of the link.
-inline constexpr hal::TimeNs kMostAllowed = 500 * hal::kNsPerMs;
-
 struct SessionTiming {
   hal::TimeNs answer_ns =
       100 * hal::kNsPerMs;  ///< to wait for an answer, beyond the time its bytes take; Bluetooth: 500 ms

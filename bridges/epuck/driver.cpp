@@ -3,15 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <limits>
 
 #include "bridges/epuck/conversions.hpp"
-#include "bridges/epuck/stop.hpp"
 
 namespace tandem::bridges::epuck {
 namespace {
 
 // A packet has at most 64 bytes; a link that does not take them at once is about to hang.
 constexpr hal::TimeNs kWriteBudget = 2 * hal::kNsPerMs;
+
+constexpr hal::TimeNs kNever = std::numeric_limits<hal::TimeNs>::max();
 
 // Between an answer and the latch that it is for.
 constexpr hal::TimeNs kLeastMargin = 4 * hal::kNsPerMs;

@@ -1,6 +1,7 @@
 #include "bridges/epuck/session.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "bridges/epuck/conversions.hpp"
 
@@ -9,10 +10,13 @@ namespace {
 
 using hal::TimeNs;
 
+constexpr TimeNs kNever = std::numeric_limits<TimeNs>::max();
+
 // Zeros behind "set speeds": however many of its own four bytes are lost, what follows is not taken for speeds.
 constexpr std::size_t kBehindSpeeds = 8;
 constexpr std::size_t kBehindLamps = 2;
 constexpr std::size_t kVersionBytes = 100;  // of both lines
+constexpr TimeNs kMostAllowed = 500 * hal::kNsPerMs;
 
 void append_zeros(Packet& packet, std::size_t n) noexcept {
   for (std::size_t i = 0; i < n; ++i) packet.append({0});

@@ -1,11 +1,14 @@
 #include "bridges/epuck/stop.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace tandem::bridges::epuck {
 namespace {
 
 using hal::TimeNs;
+
+constexpr TimeNs kNever = std::numeric_limits<TimeNs>::max();
 
 // The longest payload has 35 bytes, a 0 ends the packet, and eight may be lost.
 constexpr std::size_t kLeadIn = 35 + 1 + 8;

@@ -21,7 +21,6 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <string_view>
 
@@ -29,8 +28,6 @@
 #include "hal/time.hpp"
 
 namespace tandem::bridges::epuck {
-
-inline constexpr hal::TimeNs kNever = std::numeric_limits<hal::TimeNs>::max();
 
 /// Bursts of one round of the stop, to be sent in this order, `kStopBurstGap` after one another. None is longer than
 /// the robot's receive buffer.

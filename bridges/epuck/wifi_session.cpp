@@ -1,21 +1,23 @@
 #include "bridges/epuck/wifi_session.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <string_view>
 
 #include "bridges/epuck/conversions.hpp"
-#include "bridges/epuck/stop.hpp"
 
 namespace tandem::bridges::epuck {
 namespace {
 
 using hal::TimeNs;
 
+constexpr TimeNs kNever = std::numeric_limits<TimeNs>::max();
 constexpr TimeNs kSayStopAgain = 50 * hal::kNsPerMs;
-constexpr TimeNs kSettle = 100 * hal::kNsPerMs;       // what came sooner may have been measured before the stop
-constexpr TimeNs kSame = 200 * hal::kNsPerMs;         // that wheels which stand have the same counters
-constexpr TimeNs kSilence = 1500 * hal::kNsPerMs;     // then another link is tried
-constexpr TimeNs kPace = 5 * hal::kNsPerMs;           // the robot takes 11 ms or more for each
+constexpr TimeNs kSettle = 100 * hal::kNsPerMs;    // what came sooner may have been measured before the stop
+constexpr TimeNs kSame = 200 * hal::kNsPerMs;      // that wheels which stand have the same counters
+constexpr TimeNs kSilence = 1500 * hal::kNsPerMs;  // then another link is tried
+constexpr TimeNs kPace = 5 * hal::kNsPerMs;        // the robot takes 11 ms or more for each
+constexpr TimeNs kMostAllowed = 500 * hal::kNsPerMs;
 constexpr TimeNs kUsualLatency = 40 * hal::kNsPerMs;  // before any was seen
 // Radio and robot talk over a serial line of 115200 baud: the sensors' 103 bytes are so old when the radio has them.
 constexpr TimeNs kInside = 103 * 86'806;

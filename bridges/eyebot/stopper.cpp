@@ -14,7 +14,7 @@ constexpr TimeNs kWait = 20 * hal::kNsPerMs;
 constexpr TimeNs kMute = 3 * hal::kNsPerSecond;
 constexpr TimeNs kHoverWithin = 2 * hal::kNsPerSecond;  // then it is told to land all the same
 
-DriverSettings driver_settings(const StopDetails& details) {
+DriverSettings settings_for(const StopDetails& details) {
   DriverSettings s;
   s.robot.id = s.name = details.name;
   s.hub = details.hub;
@@ -44,7 +44,7 @@ EyebotStopper::EyebotStopper(const StopDetails& details, StopCause cause)
     : details_(details),
       land_(details.land && cause == StopCause::HubGone),
       inbox_(std::make_shared<Inbox>()),
-      driver_(driver_settings(details), *inbox_, *this) {}
+      driver_(settings_for(details), *inbox_, *this) {}
 
 bool EyebotStopper::publish(const std::string& channel, std::span<const std::byte> data) noexcept {
   return link_ && link_->publish(channel, data);

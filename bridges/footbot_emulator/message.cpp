@@ -5,6 +5,11 @@
 #include "hal/check.hpp"
 
 namespace tandem::bridges::footbot_emulator {
+namespace {
+
+constexpr std::string_view kHex = "0123456789ABCDEF";
+
+}  // namespace
 
 // 47 bits around the data; a stuff bit after 5 equal ones at first, then after every 4, in what comes before the check
 // sum's delimiter [Bosch, CAN 2.0, section 5].

@@ -5,15 +5,12 @@
 #include <array>
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "bridges/aseba_emulation/message.hpp"
 #include "hal/time.hpp"
 
 namespace tandem::bridges::footbot_emulator {
-
-inline constexpr std::string_view kHex = "0123456789ABCDEF";
 
 /// A standard data frame.
 struct Frame {

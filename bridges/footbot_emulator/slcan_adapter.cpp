@@ -9,6 +9,7 @@ namespace {
 constexpr char kEnd = '\r';
 constexpr char kRefused = '\a';
 constexpr std::size_t kLongestLine = 32;
+constexpr std::string_view kHex = "0123456789ABCDEF";
 constexpr hal::TimeNs kStampPeriodMs = 60'000;  // stamps go from 0 to 59,999
 
 std::optional<unsigned> hex(std::string_view digits) {

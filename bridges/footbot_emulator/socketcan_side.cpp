@@ -12,7 +12,7 @@
 namespace tandem::bridges::footbot_emulator {
 namespace {
 
-constexpr std::size_t kMostKept = 1100;  // frames that the robot's translator can keep
+constexpr std::size_t kMostUnsent = 1100;  // frames that the robot's translator can keep
 
 /// All modules behind one raw socket.
 class SocketCanSide final : public HostSide {
@@ -49,9 +49,9 @@ class SocketCanSide final : public HostSide {
   void tell(const Frame& frame, hal::TimeNs now) override {
     unsent_.push_back(frame);
     flush(now);
-    if (unsent_.size() <= kMostKept) return;
-    sink_(now, "overflow", {{"frames", unsent_.size() - kMostKept}});
-    unsent_.resize(kMostKept);
+    if (unsent_.size() <= kMostUnsent) return;
+    sink_(now, "overflow", {{"frames", unsent_.size() - kMostUnsent}});
+    unsent_.resize(kMostUnsent);
   }
 
   void flush(hal::TimeNs /*now*/) override {
