@@ -8,7 +8,7 @@
 namespace tandem::app {
 
 hal::Json start_of_record(core::World& world, const InputFiles& inputs) {
-  hal::Json start = record_start(world, inputs);
+  hal::Json start = record_start(world.scenario(), world.seed(), inputs);
   hal::Json scripts = core::source_files(world);
   for (hal::Json& files : scripts) {
     for (hal::Json& file : files) file.erase("path");

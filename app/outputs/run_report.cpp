@@ -175,15 +175,15 @@ std::string changed_files(const hal::Json& start, const InputFiles& now, bool ot
   return changed;
 }
 
-hal::Json record_start(const core::World& world, const InputFiles& inputs) {
+hal::Json record_start(const core::Scenario& scenario, std::uint64_t seed, const InputFiles& inputs) {
   hal::Json json;
-  json["experiment"] = world.scenario().name;
-  json["seed"] = world.seed();
-  json["ticks_per_second"] = world.ticks_per_second();
+  json["experiment"] = scenario.name;
+  json["seed"] = seed;
+  json["ticks_per_second"] = scenario.ticks_per_second;
   add_inputs(json, inputs);
   json["program"] = to_json(build_info());
-  json["settings"] = hal::to_xml(world.scenario().effective);
-  if (hal::Json areas = core::areas_json(world.scenario().safety); !areas.empty()) json["areas"] = std::move(areas);
+  json["settings"] = hal::to_xml(scenario.effective);
+  if (hal::Json areas = core::areas_json(scenario.safety); !areas.empty()) json["areas"] = std::move(areas);
   return json;
 }
 

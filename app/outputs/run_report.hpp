@@ -1,11 +1,13 @@
 // Makes the report and the table of a finished run.
 #pragma once
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "app/outputs/run_figures.hpp"
 #include "core/run/run.hpp"
+#include "core/scenario/scenario.hpp"
 #include "core/sim/world.hpp"
 #include "hal/json/json.hpp"
 
@@ -63,7 +65,7 @@ std::string report_of(const RunResult& result);
 hal::Json report_members(const RunResult& result);
 
 /// First block of a record: all that is known before the first tick.
-hal::Json record_start(const core::World& world, const InputFiles& inputs);
+hal::Json record_start(const core::Scenario& scenario, std::uint64_t seed, const InputFiles& inputs);
 /// Last block of a record: the report.
 hal::Json record_end(const RunResult& result);
 

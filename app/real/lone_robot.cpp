@@ -296,8 +296,8 @@ int LoneHub::prepare() {
                 mixed_reality::RealRobotParams{.rearm = mixed_reality::rearm_params(*item_.bridge),
                                                .frozen_after_ns = tick_ns + kFrozenAfter_ns},
                 tick_ns, log_);
-  const ShownRobot shown{*scenario_,          item_, lone_->real().bridge(), *file_.type, controller_->memory(),
-                         std::move(published)};
+  const ShownRobot shown{
+      *scenario_, loader_, item_, lone_->real().bridge(), *file_.type, controller_->memory(), std::move(published)};
   sinks_ = robot_sinks(options_, shown, *lone_, [this] {
     hal::Json json = report_so_far();
     json["ended"] = RobotEnd{.failure = failure_, .interrupted = interrupted_}.word();

@@ -6,15 +6,14 @@
 #include <optional>
 #include <utility>
 
-#include "app/build_info.hpp"
 #include "app/command/shared_options.hpp"
 #include "app/live/watch.hpp"
+#include "app/outputs/run_report.hpp"
 #include "app/process/signals.hpp"
 #include "app/process/terminal.hpp"
 #include "app/real/robot_space.hpp"
 #include "core/record/record.hpp"
 #include "hal/json/json_access.hpp"
-#include "hal/xml/xml.hpp"
 #include "mixed_reality/safety/lone_robot.hpp"
 #include "mixed_reality/time/monotonic.hpp"
 
@@ -61,13 +60,20 @@ class RobotSinks final : public core::RunPart {
  public:
   RobotSinks(const RobotOptions& options, const ShownRobot& shown, const mixed_reality::LoneRobot& lone,
              std::function<hal::Json()> end)
-      : options_(options), scenario_(shown.scenario), lone_(lone), space_(shown), end_(std::move(end)) {}
+      : options_(options),
+        scenario_(shown.scenario),
+        loader_(shown.loader),
+        lone_(lone),
+        space_(shown),
+        end_(std::move(end)) {}
   std::string_view name() const override { return "sinks"; }
   core::RunTurn turn() const override { return core::RunTurn::Outputs; }
 
   hal::Status join(core::Run&) override {
     if (!options_.record.empty()) {
-      auto opened = core::Recorder::open(record_config(), space_.space(), start_of_record());
+      auto opened =
+          core::Recorder::open(record_config(), space_.space(),
+                               record_start(scenario_, scenario_.seed.value_or(1), input_files(scenario_, loader_)));
       if (!opened.ok()) return opened.error();
       record_ = std::move(opened).value();
     }
@@ -102,13 +108,6 @@ class RobotSinks final : public core::RunPart {
     if (config.ports.empty()) config.ports = {"*"};
     return config;
   }
-  hal::Json start_of_record() const {
-    return {{"experiment", scenario_.name},
-            {"seed", scenario_.seed.value_or(1)},
-            {"ticks_per_second", scenario_.ticks_per_second},
-            {"program", to_json(build_info())},
-            {"settings", hal::to_xml(scenario_.effective)}};
-  }
   WatchSight sight() const { return {space_.space(), done_, scenario_.ticks_per_second}; }
   void add_robot(WatchMoment& moment) const {
     const std::string reason = lone_.reason();
@@ -119,6 +118,7 @@ class RobotSinks final : public core::RunPart {
 
   const RobotOptions& options_;
   const core::Scenario& scenario_;
+  const hal::PluginLoader& loader_;
   const mixed_reality::LoneRobot& lone_;
   RobotSpace space_;
   std::function<hal::Json()> end_;

@@ -12,6 +12,7 @@
 #include "hal/command.hpp"
 #include "hal/controller.hpp"
 #include "hal/json/json.hpp"
+#include "hal/plugin_loader.hpp"
 #include "hal/published.hpp"
 
 namespace tandem::mixed_reality {
@@ -23,6 +24,7 @@ namespace tandem::app {
 /// A robot and its controller, which outlive who shows them.
 struct ShownRobot {
   const core::Scenario& scenario;
+  const hal::PluginLoader& loader;
   const core::RobotItem& item;
   bridges::RobotBridge& bridge;
   const hal::ControllerType& type;

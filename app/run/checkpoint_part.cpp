@@ -75,7 +75,7 @@ class Checkpoints final : public core::RunPart {
   core::RunTurn turn() const override { return core::RunTurn::Outputs; }
 
   hal::Status join(core::Run& run) override {
-    about_ = record_start(run.world(), plan_.inputs);
+    about_ = record_start(run.world().scenario(), run.world().seed(), plan_.inputs);
     return {};
   }
   bool before_tick(core::Run& run) override {
