@@ -374,7 +374,6 @@ void RecordPlayer::publish() {
 
 void RecordPlayer::tell_state() {
   state_told_ = Clock::now();
-  publish();
   Json message = {{"type", "state"}};
   message.update(core::to_json(state()));
   window_.tell(std::move(message));
