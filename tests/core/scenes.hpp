@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/sim/world.hpp"
@@ -199,6 +200,17 @@ struct Scene {
         .box(-0.5 * s + 0.05, 0, 0.1, s);
   }
 };
+
+/// A hook of the tests' own library.
+inline Scene& with_hook(Scene& scene, const std::string& label, std::vector<Element::Attribute> params = {}) {
+  HookConfig hook;
+  hook.library = "test_hooks";
+  hook.label = label;
+  hook.options.name = "loop_functions";
+  hook.options.attributes = std::move(params);
+  scene.scenario.hooks.push_back(std::move(hook));
+  return scene;
+}
 
 /// Every way in which an engine flies robots: its kind, and where it has several its `flight`.
 inline std::vector<std::string> ways_to_fly() {

@@ -40,16 +40,6 @@ inline Scene crowd(const std::string& kind = "kinematics2d", const std::string& 
   return s;
 }
 
-inline Scene& with_hook(Scene& scene, const std::string& label, const std::vector<Element::Attribute>& params = {}) {
-  HookConfig hook;
-  hook.library = "test_hooks";
-  hook.label = label;
-  hook.options.name = "loop_functions";
-  hook.options.attributes = params;
-  scene.scenario.hooks.push_back(hook);
-  return scene;
-}
-
 class Held {
  public:
   explicit Held(const Scene& scene, LiveOptions options = paused(), const WorldOptions& world_options = {})

@@ -24,16 +24,6 @@ Scene shown(const std::vector<Element::Attribute>& params = {}) {
   return s;
 }
 
-Scene& with_hook(Scene& scene, const std::string& label, const std::vector<Element::Attribute>& params) {
-  HookConfig hook;
-  hook.library = "test_hooks";
-  hook.label = label;
-  hook.options.name = "loop_functions";
-  hook.options.attributes = params;
-  scene.scenario.hooks.push_back(hook);
-  return scene;
-}
-
 std::vector<std::uint64_t> hashes(World& world, int steps) {
   std::vector<std::uint64_t> all;
   for (int i = 0; i < steps; ++i) {

@@ -79,10 +79,7 @@ Scene crowd(const std::string& kind, const std::string& left = "0.06") {
   second(s, "counting_drive").robot("alone", 1.2, 1.2);
   item(s, "alone").battery = s.scenario.robots[0].battery;
   if (test::engine_traits(kind).forces) s.box(1.0, 0, 0.1, 0.2, 0.0, 0.06).movable(0.2);
-  HookConfig hook{"test_hooks", "shepherd", {}, 9};
-  hook.options.name = "loop_functions";
-  s.scenario.hooks.push_back(hook);
-  return s;
+  return with_hook(s, "shepherd");
 }
 
 class Continued : public testing::TestWithParam<std::string> {};
@@ -233,11 +230,7 @@ double measured(const Scene& scene, const Scene& changed, const char* name) {
 Scene taught(const std::string& pace) {
   Scene s(4.0, "shown");
   s.robot("a", 0.0, 0.0);
-  HookConfig hook{"test_hooks", "teacher", {}, 9};
-  hook.options.name = "loop_functions";
-  hook.options.attributes = {{"pace", pace, 9}};
-  s.scenario.hooks.push_back(hook);
-  return s;
+  return with_hook(s, "teacher", {{"pace", pace, 9}});
 }
 
 TEST(Continued, AHookWithOtherOptionsHasThemFromThenOn) {

@@ -245,11 +245,7 @@ TEST(Saving, AWallThatWouldStandOnARobotIsNamed) {
 Scene painted(const std::string& level, const std::string& pixels_per_m = "10") {
   Scene s = furnished(1.0, 0.5);
   s.field("floor", {{"source", "loop_functions", 5}, {"pixels_per_meter", pixels_per_m, 5}});
-  HookConfig hook{"test_hooks", "dial", {}, 9};
-  hook.options.name = "loop_functions";
-  hook.options.attributes = {{"level", level, 9}};
-  s.scenario.hooks.push_back(hook);
-  return s;
+  return with_hook(s, "dial", {{"level", level, 9}});
 }
 
 TEST(Saving, AnotherFloorIsThereAndPaintedAgain) {

@@ -282,13 +282,7 @@ TEST(Snapshots, OfAnotherWorldAreRefused) {
 Scene with_shepherd(std::vector<Element::Attribute> more) {
   Scene s(4.0, "everything");
   s.param("left", "0.05").param("right", "0.045").walls().robots(20, 1.0);
-  HookConfig hook;
-  hook.library = "test_hooks";
-  hook.label = "shepherd";
-  hook.options.name = "loop_functions";
-  hook.options.attributes = std::move(more);
-  s.scenario.hooks.push_back(hook);
-  return s;
+  return with_hook(s, "shepherd", std::move(more));
 }
 
 TEST(Checkpoints, AHookGoesBackAndItsMemoryWithIt) {
