@@ -1,4 +1,4 @@
-"""Makes a wheel of the built package, without pip: `python -m tandem.wheel [FOLDER]`.
+"""Makes wheels of the built package, without pip: `python -m tandem.wheel [FOLDER]`, one for each Python that it was built for.
 
 The libraries of the system that it is linked with are those of Debian's packages, as for the program.
 """
@@ -6,6 +6,7 @@ The libraries of the system that it is linked with are those of Debian's package
 import base64
 import hashlib
 import os
+import re
 import subprocess
 import sys
 import sysconfig
@@ -14,10 +15,18 @@ import zipfile
 
 from . import _tandem
 
-def _files(package):
-    """(path in the wheel, file): the package, then the plug-ins that the build lists beside it."""
+
+def _modules(package):
+    """The module's file for each minor release of Python, (3, 11) say: this Python's own has no release in its name."""
+    for name in sorted(os.listdir(package), key=lambda one: (len(one), one)):
+        if named := re.fullmatch(r"_tandem(?:\.cpython-(\d)(\d+)-.*)?\.so", name):
+            yield (int(named[1]), int(named[2])) if named[1] else sys.version_info[:2], name
+
+
+def _files(package, module):
+    """(path in the wheel, file): the package with one of its modules, then the plug-ins that the build lists beside it."""
     for name in sorted(os.listdir(package)):
-        if name.endswith((".py", ".pyi", ".so", ".typed")):
+        if name == module or name.endswith((".py", ".pyi", ".typed")):
             yield f"tandem/{name}", os.path.join(package, name)
     with open(os.path.join(os.path.dirname(package), "libraries.txt")) as listed:
         folder, *libraries = listed.read().split("\n")
@@ -38,10 +47,14 @@ def _stripped(path):
             return source.read()
 
 
-def write(folder="."):
-    """Writes tandem-VERSION-….whl into the folder; returns its path."""
-    package = os.path.dirname(os.path.abspath(__file__))
-    python = f"cp{sys.version_info.major}{sys.version_info.minor}"
+def write(folder=".", package=os.path.dirname(os.path.abspath(__file__))):
+    """Writes tandem-VERSION-….whl into the folder for each Python that the package was built for; returns their paths."""
+    return [_write(folder, package, release, module) for release, module in _modules(package)]
+
+
+def _write(folder, package, release, module):
+    major, minor = release
+    python = f"cp{major}{minor}"
     platform = sysconfig.get_platform().replace("-", "_").replace(".", "_")
     tag = f"{python}-{python}-{platform}"
     name = f"tandem-{_tandem.version}"
@@ -59,7 +72,7 @@ def write(folder="."):
             digest = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
             record.append(f"{inside},sha256={digest},{len(data)}")
 
-        for inside, file in _files(package):
+        for inside, file in _files(package, module):
             if file.endswith(".so"):
                 add(inside, _stripped(file), executable=True)
             else:
@@ -70,7 +83,7 @@ def write(folder="."):
             f"Name: tandem\nVersion: {_tandem.version}\n"
             "Summary: Co-simulation hub for robot swarms\n"
             "License: MIT\n"
-            f"Requires-Python: =={sys.version_info.major}.{sys.version_info.minor}.*\n"
+            f"Requires-Python: =={major}.{minor}.*\n"
             "Requires-Dist: numpy\n").encode())
         add(f"{info}/WHEEL", f"Wheel-Version: 1.0\nGenerator: tandem.wheel\nRoot-Is-Purelib: false\nTag: {tag}\n".encode())
         record.append(f"{info}/RECORD,,")
@@ -80,4 +93,4 @@ def write(folder="."):
 
 
 if __name__ == "__main__":
-    print(write(*sys.argv[1:2]))
+    print(*write(*sys.argv[1:2]), sep="\n")

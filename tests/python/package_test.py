@@ -43,7 +43,7 @@ class Package(unittest.TestCase):
 
     def test_is_a_wheel_that_works_on_its_own(self):
         with tempfile.TemporaryDirectory() as folder:
-            path = wheel.write(folder)
+            path = wheel.write(folder)[0]
             with zipfile.ZipFile(path) as file:
                 names = file.namelist()
                 record = next(one for one in names if one.endswith("RECORD"))
@@ -65,6 +65,24 @@ class Package(unittest.TestCase):
             world = tandem.World(os.path.join(CONFIGS, "footbot_diffusion.xml"), seed=1)
             world.run(until=2)
             self.assertEqual((done.stdout.strip(), done.stderr), (str(world.fingerprint), ""))
+
+    def test_is_a_wheel_for_each_python_that_it_was_built_for(self):
+        with tempfile.TemporaryDirectory() as folder:
+            package = os.path.join(folder, "python", "tandem")
+            os.makedirs(package)
+            for name in ("__init__.py", "_tandem.so", "_tandem.cpython-39-x86_64-linux-gnu.so", "_tandem.cpython-312-x86_64-linux-gnu.so"):
+                with open(os.path.join(package, name), "w") as file:
+                    file.write(name)
+            with open(os.path.join(folder, "python", "libraries.txt"), "w") as file:
+                file.write(folder + "\n")
+            named = {}
+            for path in wheel.write(os.path.join(folder, "wheels"), package):
+                with zipfile.ZipFile(path) as file:
+                    self.assertIn("tandem/__init__.py", file.namelist())
+                    named[os.path.basename(path).split("-")[2]] = [one for one in file.namelist() if one.endswith(".so")]
+            own = "cp%d%d" % sys.version_info[:2]
+            self.assertEqual(named, {own: ["tandem/_tandem.so"], "cp39": ["tandem/_tandem.cpython-39-x86_64-linux-gnu.so"],
+                                     "cp312": ["tandem/_tandem.cpython-312-x86_64-linux-gnu.so"]})
 
     def test_opens_the_window_on_the_same_run(self):
         world = tandem.World(room(), seed=5, parameters={"framework.experiment.length": 3})
