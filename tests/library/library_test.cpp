@@ -14,6 +14,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 const std::string kTop = test::kSourceDir, kBuild = test::kBuildDir;
+constexpr int kNotTried = 77;  // bare_root.py
 const std::string kExperiment = kTop + "/configs/epuck_diffusion.xml";
 
 /// Runs a shell command in a folder. @returns its exit code; what it printed is in `log` there.
@@ -95,6 +96,19 @@ TEST(Library, RunsInARootThatHasNothingButWhatThePackagesName) {
       << text_of(folder.path() / "log");
   EXPECT_EQ("0x" + fingerprint_of_run(), scenarios::json_value(text_of(folder.path() / "log"), "state_hash"));
   EXPECT_GT(fs::file_size(folder.path() / "root/tmp/end.png"), 1000U);
+  const int code =
+      shell("/usr/bin/python3 '" + kTop + "/tests/library/bare_root.py' '" + kTop + "/Containerfile' packages " +
+                "run /usr/share/tandem/configs/epuck_diffusion.xml --seed 7 --steps 50 " +
+                "-- /usr/bin/python3 -c \"import tandem; print('imported', tandem.__version__)\"",
+            folder.path());
+  const std::string log = text_of(folder.path() / "log");
+  if (code == kNotTried) {
+    std::cout << log;  // no archive answers, or there is no mmdebstrap
+  } else {
+    ASSERT_EQ(code, 0) << log;
+    EXPECT_THAT(log, HasSubstr("0x" + fingerprint_of_run()));
+    EXPECT_THAT(log, HasSubstr("imported "));
+  }
   for (const char* what : {"./usr/include/tandem/core/sim/world.hpp", "./usr/lib/cmake/Tandem/TandemConfig.cmake",
                            "./usr/lib/libtandem.so"}) {
     EXPECT_EQ(shell(std::string("dpkg-deb -c packages/libtandem-dev_*.deb | grep -q ' ") + what + "'", folder.path()),
