@@ -185,9 +185,10 @@ function(tandem_plugin)
 endfunction()
 
 # tandem_test_program(NAME x SOURCES … DEPS … EXTERNAL …): the GoogleTest program test_<x>, without a ctest entry.
-# All share one precompiled header, and none has more optimisation or instrumentation than a test needs (tandem_test_flags).
+# All share one precompiled header, and none has more optimisation or instrumentation than a test needs (tandem_test_flags). Its sources
+# are compiled together, which saves most of the time for headers; APART: one by one, because some have helpers of the same names.
 function(tandem_test_program)
-  cmake_parse_arguments(arg "" "NAME" "SOURCES;DEPS;EXTERNAL" ${ARGN})
+  cmake_parse_arguments(arg "APART" "NAME" "SOURCES;DEPS;EXTERNAL" ${ARGN})
   if(NOT TARGET tandem_test_headers)
     file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/test_headers.cpp CONTENT "int main() {}\n") # carries it; an executable, as they are
     add_executable(tandem_test_headers ${CMAKE_BINARY_DIR}/test_headers.cpp)
@@ -205,6 +206,9 @@ function(tandem_test_program)
     target_link_libraries(test_${arg_NAME} PRIVATE ${dep_target})
   endforeach()
   target_precompile_headers(test_${arg_NAME} REUSE_FROM tandem_test_headers)
+  if(NOT arg_APART)
+    set_target_properties(test_${arg_NAME} PROPERTIES UNITY_BUILD ON)
+  endif()
   set_target_properties(test_${arg_NAME} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
 endfunction()
 
@@ -233,8 +237,9 @@ endfunction()
 # tandem_test(NAME hal_params SOURCES … DEPS hal LABELS fast): one GoogleTest program, one ctest entry.
 # WAITS: it mostly waits for real time to pass (label `waits`): many run side by side, but beside none that computes. Each test has
 # fair trials (tests/scenarios/fair_trials.cpp), as many as that may need. FAIR: those alone, of one that computes much itself.
+# COUNTED: GoogleTest's pattern of those that repeat much to judge by counts; checked programs leave them out. APART: tandem_test_program.
 function(tandem_test)
-  cmake_parse_arguments(arg "WAITS;FAIR" "NAME;TIMEOUT" "SOURCES;DEPS;EXTERNAL;LABELS" ${ARGN})
+  cmake_parse_arguments(arg "WAITS;FAIR;APART" "NAME;TIMEOUT;COUNTED" "SOURCES;DEPS;EXTERNAL;LABELS" ${ARGN})
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 120)
   endif()
@@ -253,8 +258,16 @@ function(tandem_test)
   elseif(TANDEM_SANITIZE)
     math(EXPR arg_TIMEOUT "${arg_TIMEOUT} * 4") # so are checked programs
   endif()
-  tandem_test_program(NAME ${arg_NAME} SOURCES ${arg_SOURCES} DEPS ${arg_DEPS} EXTERNAL ${arg_EXTERNAL})
-  add_test(NAME ${arg_NAME} COMMAND test_${arg_NAME})
+  set(apart)
+  if(arg_APART)
+    set(apart APART)
+  endif()
+  tandem_test_program(${apart} NAME ${arg_NAME} SOURCES ${arg_SOURCES} DEPS ${arg_DEPS} EXTERNAL ${arg_EXTERNAL})
+  set(filter)
+  if(arg_COUNTED AND TANDEM_SANITIZE)
+    set(filter --gtest_filter=-${arg_COUNTED})
+  endif()
+  add_test(NAME ${arg_NAME} COMMAND test_${arg_NAME} ${filter})
   set_tests_properties(${arg_NAME} PROPERTIES TIMEOUT ${arg_TIMEOUT})
   if("whole" IN_LIST arg_LABELS)
     set_tests_properties(${arg_NAME} PROPERTIES COST ${arg_TIMEOUT}) # long ones are begun first
