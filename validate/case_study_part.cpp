@@ -1,4 +1,4 @@
-// The case study made again, against the table that docs/task-partitioning.md publishes; and where slanted treels lead,
+// The case study made again, against the table that studies/README.md publishes; and where slanted treels lead,
 // against the paper's model by itself.
 #include <algorithm>
 #include <array>
@@ -43,7 +43,7 @@ std::vector<std::string> split(const std::string& line, char at) {
 /// The published means by limit of the carries ("2 m"): ideal, slanted, as they are printed.
 std::vector<std::array<std::string, 3>> published() {
   std::vector<std::array<std::string, 3>> rows;
-  std::istringstream in(scene_text("../docs/task-partitioning.md"));
+  std::istringstream in(scene_text("../studies/README.md"));
   for (std::string line; std::getline(in, line);) {
     const auto cells = split(line, '|');
     if (cells.size() < 5 || cells[1].empty() || std::isdigit(static_cast<unsigned char>(cells[1][0])) == 0) continue;
@@ -94,7 +94,7 @@ double mean(const std::vector<double>& values) {
 Table throughputs() {
   Table table{
       "Throughput",
-      "Objects in the last 15 of 60 minutes, mean of 30 seeds: as docs/task-partitioning.md prints it, and made again.",
+      "Objects in the last 15 of 60 minutes, mean of 30 seeds: as studies/README.md prints it, and made again.",
       {"carry", "treels", "published", "made again", "runs"},
       {}};
   const auto values = swept();

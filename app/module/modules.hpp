@@ -1,5 +1,5 @@
 // Modules: parts of the program that lie in libraries of their own, and are built and loaded when a command or a file
-// first needs them (docs/modules.md).
+// first needs them (app/module/README.md).
 //
 // A module is a library that registers entries as a plug-in does. Its entries are the program's own, and it may call
 // all of the program and the modules that it needs. Programs for boards, tests, Python and the library have modules

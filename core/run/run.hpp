@@ -6,7 +6,7 @@
 //   run.go();
 //
 // What is not the world is a part: records, pictures, the window, the terminal's table, replay, real robots. Their
-// turns in a tick are those of `RunTurn`, whatever order they were added in; docs/runs.md has the table. Who has a loop
+// turns in a tick are those of `RunTurn`, whatever order they were added in; README.md has the table. Who has a loop
 // of their own call `begin`, `tick` and `end` instead of `go`.
 #pragma once
 #include <atomic>

@@ -18,10 +18,13 @@ namespace fs = std::filesystem;
 
 const fs::path kTop = test::kSourceDir;
 
+/// README.md, the pages under docs, and those that stand beside the code that they explain.
 std::vector<fs::path> documents() {
   std::vector<fs::path> all = {kTop / "README.md"};
-  for (const auto& entry : fs::recursive_directory_iterator(kTop / "docs")) {
-    if (entry.path().extension() == ".md") all.push_back(entry.path());
+  for (const char* folder : {"docs", "app", "bench", "bridges", "core", "mixed_reality", "studies", "tests", "validate"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(kTop / folder)) {
+      if (entry.path().extension() == ".md") all.push_back(entry.path());
+    }
   }
   return all;
 }

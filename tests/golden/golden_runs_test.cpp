@@ -55,7 +55,7 @@ std::uint64_t little_endian(const std::string& bytes, std::size_t at, std::size_
   return value;
 }
 
-/// Blocks as docs/records.md has them, but for Start and End, which tell of machine and program.
+/// Blocks as core/record/README.md has them, but for Start and End, which tell of machine and program.
 std::string record_digest(const std::string& bytes) {
   constexpr std::size_t kHeader = 32;
   constexpr std::uint64_t kStart = 1, kEnd = 8;

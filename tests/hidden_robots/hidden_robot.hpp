@@ -1,5 +1,6 @@
 // Robots whose wheels, delays and noise nobody was told, and the records that a hub and a tracker would have made of
-// them. Written from docs/records.md, docs/reality-gap.md and docs/trackers.md, without sight of `tandem fit`.
+// them. Written from core/record/README.md, mixed_reality/gap/README.md and docs/trackers.md, without sight of
+// `tandem fit`.
 #pragma once
 #include <cstdint>
 #include <string>

@@ -1,4 +1,4 @@
-// Writes records as docs/records.md describes them, and from that page alone: blocks, streams, rows.
+// Writes records as core/record/README.md describes them, and from that page alone: blocks, streams, rows.
 #pragma once
 #include <cstdint>
 #include <string>

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A peer of a run in lock-step, written from docs/lockstep.md alone: an e-puck that turns away from what is near.
+"""A peer of a run in lock-step, written from bridges/peer/README.md alone: an e-puck that turns away from what is near.
 
 lockstep_peer.py HOST PORT ROBOT"""
 import json

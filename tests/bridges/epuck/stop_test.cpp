@@ -99,7 +99,7 @@ std::size_t fewest_losses_to_move(const std::vector<ParserState>& start) {
 TEST(EpuckStop, NeedsTheseLossesToTurnItsOwnBytesIntoSpeeds) {
   std::vector<ParserState> half, whole;
   for (const ParserState& s : all_states()) (half_received_speeds(s) ? half : whole).push_back(s);
-  // docs/robots.md names both numbers.
+  // bridges/epuck/README.md names both numbers.
   EXPECT_EQ(fewest_losses_to_move(whole), 53U);
   EXPECT_EQ(fewest_losses_to_move(half), 40U);
 }

@@ -1,4 +1,4 @@
-// The lock-step protocol by its bytes, as docs/lockstep.md has them.
+// The lock-step protocol by its bytes, as bridges/peer/README.md has them.
 #include <algorithm>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

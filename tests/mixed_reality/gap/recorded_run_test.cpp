@@ -1,4 +1,4 @@
-// A record that another program writes, block by block as docs/records.md says, is what the fit reads.
+// A record that another program writes, block by block as core/record/README.md says, is what the fit reads.
 #include "mixed_reality/gap/recorded_run.hpp"
 
 #include <cmath>
