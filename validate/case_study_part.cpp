@@ -92,11 +92,10 @@ double mean(const std::vector<double>& values) {
 }
 
 Table throughputs() {
-  Table table{
-      "Throughput",
-      "Objects in the last 15 of 60 minutes, mean of 30 seeds: as studies/README.md prints it, and made again.",
-      {"carry", "treels", "published", "made again", "runs"},
-      {}};
+  Table table{"Throughput",
+              "Objects in the last 15 of 60 minutes, mean of 30 seeds: as studies/README.md prints it, and made again.",
+              {"carry", "treels", "published", "made again", "runs"},
+              {}};
   const auto values = swept();
   for (const auto& [carry, ideal, slanted] : published()) {
     for (const auto& [treels, printed] : {std::pair{"ideal", ideal}, {"slanted", slanted}}) {

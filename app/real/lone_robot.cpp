@@ -1,4 +1,6 @@
-// `tandem robot`: one real robot's controller, run here.
+// `tandem robot`: one real robot's controller, run here. Its file is a whole experiment, checked by the same reader, so
+// that `tandem run` takes the same file; only tick rate, controller and the one robot with a <bridge> count. The price:
+// a board's program needs core/config and core/scenario, and files need an <arena>.
 #include "app/real/lone_robot.hpp"
 
 #include <algorithm>

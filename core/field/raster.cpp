@@ -1,3 +1,5 @@
+// Floor images are PNG, as people draw them, read by libpng's simplified interface: two calls, linked by this folder
+// alone.
 #include "core/field/raster.hpp"
 
 #include <algorithm>

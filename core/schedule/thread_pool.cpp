@@ -1,3 +1,6 @@
+// A pool of our own instead of oneTBB, which keeps its own arenas, allocates tasks, and reports false races under the
+// thread sanitizer: a step has four phases of 0.05 to 50 ms, some hundred times a second, and must not allocate. ARGoS'
+// users expect a static and a dynamic assignment of work.
 #include "core/schedule/thread_pool.hpp"
 
 #include <algorithm>

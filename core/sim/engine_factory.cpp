@@ -11,6 +11,8 @@
 namespace tandem::core {
 namespace {
 
+// Arenas are split by default, since one Box2D world with 10,000 robots runs on one thread and slower than sixteen
+// worlds do there. Results of engines with forces then differ in detail from those of one solver (`regions="1x1"`).
 constexpr double kRobotsPerPart = 600.0;    // where a solver's data still fit the second-level cache
 constexpr double kNarrowestPart_m = 4.0;    // narrower ones spend their time on bodies mirrored across borders
 constexpr std::size_t kMostPartsASide = 8;  // … of a split chosen here

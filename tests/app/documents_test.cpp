@@ -21,7 +21,8 @@ const fs::path kTop = test::kSourceDir;
 /// README.md, the pages under docs, and those that stand beside the code that they explain.
 std::vector<fs::path> documents() {
   std::vector<fs::path> all = {kTop / "README.md"};
-  for (const char* folder : {"docs", "app", "bench", "bridges", "core", "mixed_reality", "studies", "tests", "validate"}) {
+  for (const char* folder :
+       {"docs", "app", "bench", "bridges", "core", "mixed_reality", "studies", "tests", "validate"}) {
     for (const auto& entry : fs::recursive_directory_iterator(kTop / folder)) {
       if (entry.path().extension() == ".md") all.push_back(entry.path());
     }

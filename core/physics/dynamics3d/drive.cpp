@@ -1,3 +1,6 @@
+// A thrust of limited strength by default, rotors on request: a quadrotor that leans needs sub-steps of 5 ms and a
+// rigid body in ODE for every robot of its region; the thrust needs 20 ms, and ODE only in contact. The price: without
+// flight="rotors" cameras and gyroscopes feel no lean. One suite of tests holds both to the same limits.
 #include "core/physics/dynamics3d/drive.hpp"
 
 #include <algorithm>

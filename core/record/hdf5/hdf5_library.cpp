@@ -1,4 +1,7 @@
-// What needs the HDF5 library, a shared object of its own.
+// Users of the HDF5 library, in a shared object that is loaded when such a file is written. The tables are plain data
+// sets (ticks by robots, NaN for no value, padded lists), readable by `h5py.File(f)["pose/x"]`. Records themselves have
+// a format of their own: a killed writer leaves HDF5 files unreadable, and its journal (SWMR) forbids members that come
+// later.
 #include <algorithm>
 #include <array>
 #include <hdf5.h>
