@@ -1,4 +1,4 @@
-// Options of a run, as values: of `tandem run`, `view` and `replay`, and of what draws.
+// Options of a run, as values: of `tandem run`, `view` and `replay`, and of drawings.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -29,12 +29,12 @@ struct PictureRequest {
 
 /// Holding a run while it goes on (core/live/live_run.hpp).
 struct HoldOptions {
-  bool wanted = false;            ///< somebody watches it
+  bool wanted = false;            ///< it is watched
   bool paused = false;            ///< at the start
   bool stay = false;              ///< at the end
   std::optional<double> speed;    ///< times real time; none: as the experiment says
   std::uint64_t memory_MB = 500;  ///< of checkpoints
-  std::string desk_keys;          ///< file with the keys of who commands over LCM; empty: this user's
+  std::string desk_keys;          ///< file with the keys for commands over LCM; empty: this user's
 };
 
 /// A window in browsers, for a run or a record.

@@ -1,4 +1,4 @@
-// Benches: what each is asked for, what they share, and all that there are.
+// Benches: their options, their common parts, and the list of all.
 #pragma once
 #include <atomic>
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Interface of a kind of bridges: makes a real robot of one kind from what an experiment file says of it.
+// Interface of a kind of bridges: makes a real robot of one kind from its element of an experiment file.
 //
 //   void register_epuck(hal::Registrar& registrar) {
 //     registrar.add(bridge_type);                                             this table

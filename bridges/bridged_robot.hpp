@@ -52,7 +52,7 @@ class BridgedRobot : public hal::Robot {
   /// Ports that can be reached.
   std::vector<const hal::PortType*> present() const;
 
-  /// Whether somebody reads or writes the port. `type` is one of those that the robot was made with.
+  /// Whether the port is read or written. `type` is one of those that the robot was made with.
   bool uses(const hal::PortType& type) const noexcept { return state_[bank_.row_of(type)].taken; }
   template <class T>
   bool uses() const noexcept {
@@ -86,7 +86,7 @@ class BridgedRobot : public hal::Robot {
  protected:
   void* take(const hal::PortType& type) override;
   /// The port cannot be reached, and `find` does not give it. `why` follows "has no sensor 'gripper'" for a controller;
-  /// without a reason a controller gets it all the same: somebody else may fill it.
+  /// without a reason a controller gets it all the same: others may fill it.
   void leave_out(const hal::PortType& type, std::string_view why = {});
   /// What follows "has no sensor 'x'" where no robot of the kind has one.
   std::string_view never_had = {};

@@ -36,7 +36,7 @@ struct ClockState {
 /// came. One message with a stamp of the future changes nothing. What comes at once after we were asleep is old, and no
 /// clock that was set. An answer whose stamp lies before its question proves that the clock was set back. Without
 /// answers a clock set by less than a second and a way that is longer look alike: after 5 to 10 s in which no message
-/// was as quick as before the estimate begins anew. Allocates nothing. Not thread-safe.
+/// was as quick as before the estimate starts again. Allocates nothing. Not thread-safe.
 class ClockEstimator {
  public:
   static constexpr hal::TimeNs kBin = 5 * hal::kNsPerSecond;

@@ -1,4 +1,4 @@
-// Interface of what looks at a link: which robots are there, and what they read. Moves nothing.
+// Interface of an inspector: looks at a link for robots and their readings. Moves nothing.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -31,7 +31,7 @@ struct InspectorType {
   std::string_view summary;  ///< over which links
   /// Whether it understands what passes on such a link. The first of the catalog that does is asked.
   bool (*reads)(const std::string& link) = nullptr;
-  /// Error: the link does not open, nobody answers.
+  /// Error: the link does not open, no answer comes.
   hal::Status (*run)(const InspectRequest& request) = nullptr;
 };
 

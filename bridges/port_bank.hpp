@@ -20,7 +20,7 @@ std::vector<const hal::PortType*> port_types_of() {
   return {&hal::port_type<Port>()...};
 }
 
-/// Holds one port of each class: an absent reading, or the safe command, until somebody writes it. Looks up nothing
+/// Holds one port of each class: an absent reading, or the safe command, until it is written. Looks up nothing
 /// but by type; allocates only when it is made. Not thread-safe.
 class PortBank {
  public:
@@ -82,7 +82,7 @@ void copy_values(const From& from, To& to) {
   std::copy_n(from.begin(), std::min(from.size(), to.size()), to.begin());
 }
 
-/// The ports of an emulated robot that lives in somebody else's world: that side fills the readings and takes the
+/// The ports of an emulated robot that lives in a foreign world: that side fills the readings and takes the
 /// commands, the firmware's side the other way round, each from its own thread.
 class SharedPorts {
  public:
@@ -94,7 +94,7 @@ class SharedPorts {
     const std::lock_guard lock(mutex_);
     return use(bank_);
   }
-  /// The same for who writes readings: they are new from now on.
+  /// The same for writers of readings: they are new from now on.
   template <class Use>
   void tell(Use&& use) {
     const std::lock_guard lock(mutex_);
@@ -104,7 +104,7 @@ class SharedPorts {
   /// How often readings were written; asked within `with`.
   std::uint64_t told() const noexcept { return told_; }
 
-  /// The body's true pose, of who has the world; nothing: it was not told yet.
+  /// The body's true pose, from the owner of the world; nothing: not yet known.
   void set_pose(const BodyPose& pose) {
     const std::lock_guard lock(mutex_);
     pose_ = pose;

@@ -3,7 +3,7 @@
 //   bridge->robot(), bridge->port()  a controller's ports; those that were taken decide what the robot is asked for
 //   bridge->start()                  its own I/O thread opens the link and finds the robot
 //   each tick: latch -> controller step -> commit
-//   stop / resume                    by whoever judges whether it may move
+//   stop / resume                    by the judge of whether it may move
 //   shut_down                        stops the robot, waits a little for it to confirm, closes the link
 #pragma once
 #include <cstdint>
@@ -116,7 +116,7 @@ class RobotBridge {
   /// Who answers over which device. Words of the robot are absent until it has told them on the device as it is open
   /// now; while there is none, the device is the last one. `stop_version` tells when to ask again.
   virtual RobotIdentity identity() const = 0;
-  /// How a guardian stops it as it is now, and who it is.
+  /// How a guardian stops it as it is now, and its identity.
   virtual StopMessages stop_messages() const = 0;
   /// Cheap; grows whenever `identity` or `stop_messages` would answer otherwise. With a robot that becomes Active, at
   /// the latest.

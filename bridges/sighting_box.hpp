@@ -1,4 +1,4 @@
-// Where a tracker's thread leaves what it saw, until somebody takes it.
+// Box for a tracker thread's sightings, until the hub takes them.
 #pragma once
 #include <cstddef>
 #include <mutex>

@@ -8,7 +8,7 @@
 namespace tandem::bridges {
 
 /// Everything that it takes to stop one real robot. `version` grows whenever any other field changes (a module came, a
-/// session began), so that whoever keeps a copy knows when to renew it.
+/// session began), so that keepers of copies know when to renew them.
 struct StopMessages {
   std::string robot;  ///< its id in the experiment, for people
   std::string kind;   ///< names the `StopperType` that understands `body`, e.g. "e-puck"
@@ -16,7 +16,7 @@ struct StopMessages {
   std::string body;   ///< the kind's own; any bytes
   std::uint64_t version = 0;
   std::string name = {};        ///< which robot, where several share the link (an eye-bot's name); else ""
-  RobotIdentity identity = {};  ///< who it is, as far as is known by now
+  RobotIdentity identity = {};  ///< its identity, as far as known by now
 
   friend bool operator==(const StopMessages&, const StopMessages&) = default;
 };

@@ -1,4 +1,4 @@
-// Interface of a tracker: what sees real robots from outside (cameras, motion capture) and tells where they are.
+// Interface of a tracker: sees real robots from outside (cameras, motion capture) and reports their places.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -41,7 +41,7 @@ struct TrackerReport {
   std::uint64_t messages = 0;                                      ///< that came
   std::uint64_t malformed = 0;                                     ///< of those, that were none, or only in part
   std::uint64_t sightings = 0;                                     ///< that were in them
-  std::uint64_t dropped = 0;                                       ///< because nobody took them in time
+  std::uint64_t dropped = 0;                                       ///< because they were not taken in time
   std::string trouble = {};                                        ///< what is wrong; empty: nothing is known to be
   std::vector<std::pair<std::string, std::uint64_t>> counts = {};  ///< that its kind alone has, by their names
 };

@@ -1,4 +1,4 @@
-// Interface of a kind of trackers: makes one from what an experiment file says in <trackers>.
+// Interface of a kind of trackers: makes one from its element in <trackers>.
 //
 //   void register_trackers(hal::Registrar& registrar) {
 //     registrar.add(udp_type);                                              this table

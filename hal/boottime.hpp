@@ -1,4 +1,4 @@
-// The clock that goes on while the machine sleeps: for whoever has to notice that it did.
+// The clock that goes on while the machine sleeps: to notice such sleep.
 #pragma once
 #include <cstdint>
 #include <time.h>

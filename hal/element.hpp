@@ -66,14 +66,14 @@ std::string path_beside(const std::string& path, const std::string& file);
 /// mean".
 class ElementReader final : public ParamVisitor {
  public:
-  /// `ignore` are attributes that belong to somebody else (e.g. "id", "library", "implementation"), `ignore_children`
+  /// `ignore` are attributes that belong to others (e.g. "id", "library", "implementation"), `ignore_children`
   /// elements that do.
   ElementReader(const Element& element, Problems& problems, std::vector<std::string> ignore = {},
                 std::vector<std::string> ignore_children = {});
 
   void visit(const Param& param) override;
   void finish();
-  /// For elements whose children are somebody else's.
+  /// For elements whose children belong to others.
   void finish_attributes();
 
  private:

@@ -1,4 +1,4 @@
-// Opens plug-ins and keeps what they offer.
+// Opens plug-ins and keeps their entries.
 #pragma once
 #include <filesystem>
 #include <functional>

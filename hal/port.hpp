@@ -116,7 +116,7 @@ struct PortType : RowType {
                        Limited& what) = nullptr;
   /// The three that follow are set for commands that move the robot, and are asked for real robots alone.
   /// Slows the command so that the robot moves with `most_m_s` at most; the way and the direction stay. `at`: where it
-  /// is; null: nobody knows.
+  /// is; null: unknown.
   void (*slow_down)(void* command, double most_m_s, const Pose* at) = nullptr;
   /// Takes away, or replaces, what leads out of the fence within `look_ahead_s`. @returns whether there was such.
   bool (*keep_inside)(void* command, const Fence& fence, const Pose& at, double look_ahead_s) = nullptr;

@@ -9,7 +9,7 @@ namespace tandem::hal {
 /// A message of a controller, a plug-in or a script is cut to this many bytes.
 inline constexpr std::size_t kLongestMessage = 4096;
 
-/// `text` as a terminal may get it, whoever wrote it: control characters but tabs and line ends, and bytes that are no
+/// Foreign `text` as a terminal may get it: control characters but tabs and line ends, and bytes that are no
 /// UTF-8, become \x1b and the like; characters that turn or hide what stands beside them (bidirectional controls,
 /// characters without width, the other line ends of Unicode) become \u202e and the like.
 std::string printable(std::string_view text);

@@ -1,4 +1,4 @@
-// Messages of controllers to people: each names its robot and the tick, and nobody drowns in them.
+// Messages of controllers to people: each names its robot and the tick; their number is limited.
 #pragma once
 #include <cstdint>
 #include <limits>

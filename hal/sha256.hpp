@@ -1,4 +1,4 @@
-// SHA-256, and HMAC by it: tells which file was run, and proves who sends a message.
+// SHA-256, and HMAC by it: identifies files, and proves senders of messages.
 #pragma once
 #include <string>
 #include <string_view>
@@ -13,7 +13,7 @@ std::string sha256(std::string_view bytes);
 /// Digest of a file. Error: that of `read_whole_file`.
 Result<std::string> sha256_of_file(const std::string& path);
 
-/// Keyed digest of a message, 64 hexadecimal digits [RFC 2104, RFC 4231]: only who has the key can make it.
+/// Keyed digest of a message, 64 hexadecimal digits [RFC 2104, RFC 4231]: only holders of the key can make it.
 std::string hmac_sha256(std::string_view key, std::string_view message);
 
 }  // namespace tandem::hal

@@ -1,6 +1,6 @@
-// Files that a controller runs, such as scripts, as whoever watches a run sees and changes them.
+// Files that a controller runs, such as scripts, as viewers of a run see and change them.
 //
-// They are the value of a text control (hal/controls.hpp) under a name that is shown to nobody. A controller that has
+// They are the value of a text control (hal/controls.hpp) under a hidden name. A controller that has
 // it begins anew, as if it were just made, when the value is changed; it throws where it cannot, and is as before then.
 #pragma once
 #include <cstddef>
@@ -55,10 +55,10 @@ inline std::vector<SourceFile> unpacked(std::string_view all) {
   return files;
 }
 
-/// Takes the files from whoever shows its controls.
+/// Takes the files from the display of its controls.
 class SourceFilesTaker : public Controls {
  public:
-  /// None: nobody has shown any.
+  /// None: none were shown.
   const std::optional<std::vector<SourceFile>>& files() const noexcept { return files_; }
 
   bool text(std::string_view name, std::string& value, std::string_view) override {

@@ -1,4 +1,4 @@
-// Roles of people at a run: what they may do.
+// Roles of people at a run, with their permissions.
 #pragma once
 #include <cstdint>
 

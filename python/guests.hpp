@@ -1,5 +1,5 @@
 // Classes of Python that take part in a world: controllers and hooks; and the controller that leaves its robot to
-// whoever writes its ports from outside.
+// writers of its ports from outside.
 #pragma once
 #include <memory>
 #include <pybind11/pybind11.h>

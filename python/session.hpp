@@ -17,7 +17,7 @@ namespace tandem::python {
 
 class World;
 
-/// Every array handed out holds its session, so that no memory goes while somebody looks at it. Destroyed with Python's
+/// Every array handed out holds its session, so that no memory goes while it is in use. Destroyed with Python's
 /// lock held.
 struct Session {
   explicit Session(std::vector<std::filesystem::path> folders, hal::Catalog catalog)
@@ -30,7 +30,7 @@ struct Session {
   std::unique_ptr<core::Run> run;             ///< of that world; another one after each reset
   World* owner = nullptr;                     ///< null once that is closed
   core::HookContext* hook_context = nullptr;  ///< while a hook of Python is called
-  bool writes = false;                        ///< somebody may write commands between steps
+  bool writes = false;                        ///< commands may be written between steps
   std::vector<std::string> keys;              ///< of its guests (guests.hpp)
   /// The references that it holds to guests and hooks, one each, so that Python's collector finds a hook that keeps its
   /// world. With Python's lock.

@@ -1,4 +1,4 @@
-// Studies as they are read from a file: experiments, what is varied, seeds, measures.
+// Studies as they are read from a file: experiments, varied settings, seeds, measures.
 #pragma once
 #include <cstdint>
 #include <optional>

@@ -1,4 +1,4 @@
-// Readings of simulated sensors that were compared with what they should be.
+// Readings of simulated sensors, compared with their references.
 #pragma once
 #include <algorithm>
 #include <cmath>

@@ -17,7 +17,7 @@ struct SolidCylinder {
   double x_m = 0.0, y_m = 0.0;
   double radius_m = 0.0;
   double low_m = 0.0, high_m = 0.0;
-  std::size_t owner = 0;  ///< number of the robot that it is the body of, from 1 on; 0: nobody's
+  std::size_t owner = 0;  ///< number of the robot that it is the body of, from 1 on; 0: none
 };
 
 struct Solids {

@@ -1,4 +1,4 @@
-// One run of a scene: a world is made, driven, and what the scene asks for is measured.
+// One run of a scene: a world is made, driven, and the scene's quantities are measured.
 #pragma once
 #include "hal/result.hpp"
 #include "validate/scene.hpp"

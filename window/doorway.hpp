@@ -1,4 +1,4 @@
-// Doorway: who may come in. Pure functions over what a request says.
+// Doorway: admission of viewers. Pure functions over a request.
 #pragma once
 #include <string>
 #include <string_view>

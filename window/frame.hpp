@@ -46,7 +46,7 @@ struct FrameObject {
   double x_m = 0.0, y_m = 0.0, z_m = 0.0, heading_rad = 0.0;
 };
 
-/// Lengths in m, in W. Arrays of members hold a value for each, or are empty where nobody needs one.
+/// Lengths in m, in W. Arrays of members hold a value for each, or are empty where not needed.
 struct Frame {
   hal::Tick tick = 0;  ///< ticks that were done
   double time_s = 0.0;
@@ -59,7 +59,7 @@ struct Frame {
   std::vector<float> values;               ///< by FrameMembers::first_value: what moves on them
   std::vector<std::uint32_t> halted;       ///< indices of members
   std::vector<FrameObject> objects;        ///< the movable ones
-  std::vector<FrameLayer> layers;          ///< those that were drawn anew
+  std::vector<FrameLayer> layers;          ///< those that were drawn again
 
   /// Empty, with its memory kept.
   void clear() noexcept;

@@ -1,4 +1,4 @@
-// Server: listens, and brings together who visits, who watches, and the run that is watched.
+// Server: listens, and joins visitors, viewers and the watched run.
 //
 //   Visitor (HTTP)  ->  Viewer (WebSocket)  <->  Server  <->  Window  <->  the run
 //
@@ -69,10 +69,10 @@ class Server : public std::enable_shared_from_this<Server> {
   void set_wishes();
   void wished();
   void carry_out(Viewer& viewer, const ViewerCommand& command);
-  /// Why whoever has this role may not say anything like this command now; empty: nothing is in the way.
+  /// Why this role may not say anything like this command now; empty: nothing is in the way.
   std::string too_much(UserRole role, const std::string& command);
   std::shared_ptr<const std::string> floor_png(const FrameScene& scene);
-  /// False: nobody makes pictures here.
+  /// False: no pictures are made here.
   bool make_picture(const std::string& name, const std::shared_ptr<Visitor>& visitor);
 
   WindowOptions options;

@@ -31,7 +31,7 @@ class SpaceFrames {
   std::uint32_t generations_ = 0;
   std::size_t living_ = 0, objects_ = 0;
   std::shared_ptr<const FrameMembers> members_;
-  // By member; they stay where they are until somebody comes or goes.
+  // By member; they stay where they are until members change.
   std::vector<std::uint32_t> rows_;
   bool in_order_ = false;  // rows_[i] == i
   std::vector<std::uint32_t> member_of_row_;

@@ -15,7 +15,7 @@ namespace tandem::window {
 
 class Server;
 
-/// Who speaks to the window: its role, and where its connection comes from, in numbers.
+/// A speaker to the window: its role, and where its connection comes from, in numbers.
 struct Speaker {
   UserRole role = UserRole::Viewer;
   std::string address;

@@ -1,4 +1,4 @@
-// Window: serves the page and talks to its viewers, on a thread of its own; nobody who steps waits for a viewer.
+// Window: serves the page and talks to its viewers, on a thread of its own; steps never wait for viewers.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -50,24 +50,24 @@ class Window {
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  /// "http://127.0.0.1:8123/?token=…": whoever opens it is an operator.
+  /// "http://127.0.0.1:8123/?token=…": its opener is an operator.
   const std::string& address() const noexcept;
-  /// The same with the token of viewers: whoever opens it sees, and commands nothing but an emergency stop.
+  /// The same with the token of viewers: its opener sees, and commands nothing but an emergency stop.
   const std::string& viewers_address() const noexcept;
   std::uint16_t port() const noexcept;
 
-  /// Who carries out commands that are not the window's own (rate, layers, inspect): called on the window's thread,
+  /// Carries out commands that are not the window's own (rate, layers, inspect): called on the window's thread,
   /// must not wait; `reply` may be called on any thread, once, also when the viewer or the window is gone. "by" in the
   /// command is the window's word: {"role": "operator" or "viewer", "address": numbers}.
   void set_commands(std::function<void(hal::Json command, WindowReply reply)> take);
   /// Told of commands that were refused because a viewer may not say them: on the window's thread, must not wait.
   void on_refused(std::function<void(const hal::Json& command, const hal::Json& answer)> tell);
-  /// Who makes "picture.svg" and "picture.png": as `set_commands`.
+  /// Makes "picture.svg" and "picture.png": as `set_commands`.
   void set_pictures(std::function<void(const std::string& name, WindowFileReply reply)> make);
   /// Called on the window's thread when a viewer came or wishes changed: a frame is to be shown although nothing moved.
   void on_wish(std::function<void()> changed);
 
-  /// Whether somebody waits for a frame: one atomic read. False when nobody watches, and as long as the last frame is
+  /// Whether a viewer waits for a frame: one atomic read. False without viewers, and as long as the last frame is
   /// younger than viewers want.
   bool wants_frame() const noexcept;
   /// Whether anybody watches: one atomic read.

@@ -1,4 +1,4 @@
-// The commands of `tandem`, a file each: its options, their description and what it does.
+// The commands of `tandem`, a file each: options, description, function.
 #pragma once
 #include <string>
 

@@ -1,4 +1,4 @@
-// What `tandem export` is asked for.
+// Options of `tandem export`.
 #pragma once
 #include <string>
 

@@ -1,4 +1,4 @@
-// What `tandem list` and `tandem describe` show of one kind of entries; modules add theirs.
+// Lists and manuals of one kind of entries, for `tandem list` and `tandem describe`; modules add theirs.
 #pragma once
 #include <fmt/format.h>
 #include <string>

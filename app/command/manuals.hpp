@@ -1,4 +1,4 @@
-// All commands with their descriptions, for what documents them: completion and manual pages.
+// All commands with their descriptions, for completion and manual pages.
 #pragma once
 #include <memory>
 #include <string>

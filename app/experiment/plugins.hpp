@@ -32,7 +32,7 @@ struct KindsOfFile {
 /// Of this process.
 std::ptrdiff_t thread_count();
 
-/// An experiment file on its way to a scenario, with its plug-ins and those of `--plugin`. What goes wrong is printed.
+/// An experiment file on its way to a scenario, with its plug-ins and those of `--plugin`. Errors is printed.
 class ExperimentReading {
  public:
   /// `loader` must outlive this, and all that is made with its catalog.

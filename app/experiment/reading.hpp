@@ -1,4 +1,4 @@
-// What the commands make of an experiment file before they begin.
+// Reads an experiment file for the commands, before they begin.
 #pragma once
 #include <cstdint>
 #include <optional>

@@ -1,4 +1,4 @@
-// What the module `real` offers to runs: an entry of the catalog.
+// The offer of the module `real` to runs: an entry of the catalog.
 #pragma once
 #include <memory>
 #include <string>

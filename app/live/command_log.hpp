@@ -1,4 +1,4 @@
-// Audit: who commanded what, when, from where, and what came of it, as entries of the run's log file.
+// Audit of commands: author, time, address and result, as entries of the run's log file.
 #pragma once
 #include <functional>
 #include <string>

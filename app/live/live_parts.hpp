@@ -10,7 +10,7 @@ int read_repeated(RunPlan& plan);
 /// The repeated run begins with the scripts of the record, whatever stands in their files now.
 void run_recorded_scripts(RunPlan& plan);
 
-/// People who pause the run, go back in it and touch it; of a run with real robots nobody can go back.
+/// People who pause the run, go back in it and touch it; runs with real robots have no way back.
 void hold(RunPlan& plan, core::Run& run);
 /// A table of it on the terminal.
 void watch(RunPlan& plan, core::Run& run);

@@ -1,4 +1,4 @@
-// The table of `run --watch`: what is told of a run, and how it is laid out on a screen of any size.
+// The table of `run --watch`: its contents, and its layout on a screen of any size.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -28,7 +28,7 @@ struct WatchSight {
   const core::Space& space;
   hal::Tick done = 0;  ///< ticks
   std::int64_t ticks_per_second = 10;
-  std::optional<core::Incidents> incidents = {};  ///< nothing: nobody has counted them
+  std::optional<core::Incidents> incidents = {};  ///< nothing: not counted
 };
 
 /// One moment of a run as texts.

@@ -33,7 +33,7 @@ bool is_loaded(const Module& module) noexcept;
 std::filesystem::path file_of(const Module& module);
 
 /// Loads the module and those it needs; one that is not built is built first, where the launcher at the top of a
-/// checkout has started this program. Starts no thread. Errors: no such library, and nobody who could build it; it
+/// checkout has started this program. Starts no thread. Errors: no such library, and no way to build it; it
 /// could not be built; it does not fit this program.
 hal::Status load_module(std::string_view name);
 /// The same, and the loader's catalog has its entries.

@@ -1,4 +1,4 @@
-// The live list of real robots on a terminal: who may move, waits for a person, cannot be reached. Never cut.
+// The live list of real robots on a terminal: those that may move, wait for a person, are not reached. Never cut.
 #pragma once
 #include <functional>
 #include <string>

@@ -37,7 +37,7 @@ class RunLog {
   RunLog() = default;
   RunLog(const RunLog&) = delete;
   RunLog& operator=(const RunLog&) = delete;
-  /// Who gets every message as well; empty: nobody. Is called on the thread that has the message.
+  /// Gets every message as well; may be empty. Is called on the thread that has the message.
   void tell_also(std::function<void(std::string_view)> listener);
   /// The results are written: an error from here on is of a controller or hook that is destroyed.
   void results_done();

@@ -1,4 +1,4 @@
-// What a record says of a run: rows, incidents, fingerprints, what people did.
+// The record of a run: rows, incidents, fingerprints, actions of people.
 #pragma once
 #include <cstddef>
 #include <memory>
@@ -53,7 +53,7 @@ class RecordPart final : public core::RunPart {
   InputFiles inputs_;
   std::unique_ptr<core::Recorder> record_;
   RunRecord kept_;
-  hal::Status late_;  // of events, which are nobody's turn
+  hal::Status late_;  // of events, which have no turn
 };
 
 }  // namespace tandem::app

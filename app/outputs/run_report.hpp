@@ -13,7 +13,7 @@
 
 namespace tandem::app {
 
-/// How a run ended: its length was done, a hook or a part of a plug-in ended it, somebody interrupted it, or it failed.
+/// How a run ended: its length was done, a hook or a part of a plug-in ended it, a signal interrupted it, or it failed.
 enum class Ended { Length, Hook, Part, Interrupted, Failed };
 
 /// A run that is over.
@@ -45,7 +45,7 @@ struct InputFiles {
 InputFiles input_files(const core::Scenario& scenario, const hal::PluginLoader& loader);
 
 /// The files and plug-ins that are not those of a run, by what its record or checkpoint says at its start, a line each,
-/// and each after a line's end. `others_named`: those of another name are what somebody asked for.
+/// and each after a line's end. `others_named`: those of another name are intended.
 std::string changed_files(const hal::Json& start, const InputFiles& now, bool others_named);
 
 /// Input of the report and the table.

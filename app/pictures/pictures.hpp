@@ -37,13 +37,13 @@ hal::Result<std::unique_ptr<core::LayerSet>> layers_of(const PictureRequest& req
 /// Adds what they show.
 void draw_layers(core::LayerSet& layers, const core::Observation& now, core::Drawing& drawing);
 
-/// Draws on a thread of its own. Who hands over drawings waits when that is far behind: no frame is left out, until
+/// Draws on a thread of its own. The caller waits when that is far behind: no frame is left out, until
 /// `stop` is set: then what is not drawn yet is left out, and the film ends there.
 class Pictures {
  public:
   /// Whether there is anything to be drawn before the end.
   static bool asked(const PictureRequest& request) noexcept;
-  /// `ticks` are to come; 0: nobody knows. Error: a film of too many frames, a tick that does not come, or a file that
+  /// `ticks` are to come; 0: unknown. Error: a film of too many frames, a tick that does not come, or a file that
   /// cannot be written. `stop` must outlive this.
   static hal::Result<std::unique_ptr<Pictures>> open(const PictureRequest& request, const core::PictureLook& look,
                                                      std::int64_t ticks_per_second, std::int64_t ticks,

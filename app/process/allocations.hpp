@@ -1,4 +1,4 @@
-// Counts what the whole process, plug-ins included, takes from the heap by `new`.
+// Counts the whole process' allocations by `new`, plug-ins included.
 #pragma once
 #include <cstdint>
 #include <optional>

@@ -1,10 +1,10 @@
-// Emergency exit of a process that cannot go on: names the plug-in, saves what was recorded.
+// Emergency exit of a process that cannot go on: names the plug-in, saves the records.
 #pragma once
 #include <string_view>
 
 namespace tandem::app {
 
-/// From here on a crash (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGABRT), an exception that nobody catches and a
+/// From here on a crash (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGABRT), an uncaught exception and a
 /// plug-in that calls `exit` or `_exit` end the process with exit code 3 and a message that names the plug-in whose
 /// code it was, its robot and the tick. Not in processes that are forked off it. Once, at the start of the program.
 void catch_crashes() noexcept;

@@ -9,11 +9,11 @@ namespace tandem::app {
 /// nohup.
 const std::atomic<bool>& catch_signals();
 
-/// Set by Ctrl-Z (SIGTSTP) from `catch_suspend` on, instead of suspending the process; whoever looks at it does that.
+/// Set by Ctrl-Z (SIGTSTP) from `catch_suspend` on, instead of suspending the process; its reader does that.
 std::atomic<bool>& suspend_asked() noexcept;
 void catch_suspend();
 
-/// Has Ctrl-Z take the screen away before it suspends the process, where nobody else catches it.
+/// Has Ctrl-Z take the screen away before it suspends the process, where nothing else catches it.
 void catch_suspend_of_screen();
 /// Set when the process goes on after a suspension, from that call on.
 std::atomic<bool>& continued() noexcept;

@@ -14,7 +14,7 @@ namespace tandem::app {
 /// nothing.
 class Watchdog {
  public:
-  /// `limit_s` 0: nobody is named, and a stop waits 5 s. `end_s` 0: it ends the process only after a stop. `stop` must
+  /// `limit_s` 0: names nothing, and a stop waits 5 s. `end_s` 0: it ends the process only after a stop. `stop` must
   /// outlive this.
   Watchdog(double limit_s, const std::atomic<bool>& stop, double end_s = 0.0);
   ~Watchdog();

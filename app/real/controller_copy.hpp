@@ -1,4 +1,4 @@
-// Tells what this program's copy of a controller is made of, for the other side of a run in lock-step.
+// Describes this program's copy of a controller, for the other side of a run in lock-step.
 #pragma once
 #include <vector>
 

@@ -2,7 +2,7 @@
 //
 //   --keys FILE                             if it is given; else
 //   $XDG_CONFIG_HOME/tandem/desk.keys       if it is there (~/.config without that variable); else
-//   a key of this user on this machine      made by the run, in the folder of locks: nobody else can read it
+//   a key of this user on this machine      made by the run, in the folder of locks: unreadable to others
 #pragma once
 #include <string>
 #include <vector>

@@ -44,7 +44,7 @@ class Desks {
   }
 
   /// Any command of the window's protocol; on any thread. An emergency stop waits for no tick. `from`: who says it,
-  /// unless the command does in "who"; "by" in it is the word of whoever let it in: {"role", "address"}.
+  /// unless the command does in "who"; "by" in it comes from the door that let it in: {"role", "address"}.
   void post(hal::Json command, core::LiveReply reply, std::string_view from);
 
   /// Message "real" of the view protocol: every real robot, the spares, whose word counted. By the thread that steps.

@@ -31,7 +31,7 @@ class GuardedRobots {
   const hal::Status& started() const noexcept { return started_; }
   /// Robots that dead programs had left, and what has become of them.
   const std::vector<bridges::guardian::StoppedRobot>& abandoned() const noexcept { return abandoned_; }
-  /// The guardian process lives and is awake, or no robot needs one. It is not made anew: without it no robot may be
+  /// The guardian process lives and is awake, or no robot needs one. It is not made again: without it no robot may be
   /// driven.
   bool guarded() const noexcept { return !guardian_ || guardian_->guards(); }
   /// Times that this program was frozen, and its robots stopped.
@@ -42,7 +42,7 @@ class GuardedRobots {
   void remove(const bridges::RobotBridge& bridge);
   /// As they are now, in the order in which they were added.
   std::vector<bridges::StopMessages> robots() const;
-  /// Before the first link is opened: nobody else drives these robots from now on. Error: somebody does.
+  /// Before the first link is opened: no other program drives these robots from now on. Error: one does.
   hal::Status claim();
   /// The same for one that was added since: before its link is opened.
   hal::Status claim(const bridges::RobotBridge& bridge);

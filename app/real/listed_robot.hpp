@@ -37,7 +37,7 @@ class ListedRobot final : public hal::Robot, public hal::DeviceList {
   }
   void* port(const hal::PortType& type) override { return take(type); }
 
-  /// Told what the controller publishes, which nobody looks at otherwise.
+  /// Told what the controller publishes, which is unused otherwise.
   void on_show(std::function<void(hal::PublishedField, const void* member)> told) { on_show_ = std::move(told); }
 
  protected:

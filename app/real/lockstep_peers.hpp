@@ -1,4 +1,4 @@
-// Runs in lock-step, for the commands: who takes part, and what the report says of it.
+// Runs in lock-step, for the commands: their participants, and their part of the report.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -21,7 +21,7 @@ hal::Result<std::unique_ptr<mixed_reality::LockstepRun>> make_lockstep(core::Wor
                                                                        const std::atomic<bool>& stop,
                                                                        const hal::Log& log);
 
-/// The same, with all of them there; null when the world has none, or nobody waits for them. `code` is not kDone when
+/// The same, with all of them there; null when the world has none, or no run waits for them. `code` is not kDone when
 /// they cannot, which was told.
 std::unique_ptr<mixed_reality::LockstepRun> join_peers(core::World& world, const hal::PluginLoader& loader,
                                                        const std::atomic<bool>& stop, const hal::Log& log, int& code);

@@ -1,4 +1,4 @@
-// What `tandem robot` is asked for.
+// Options of `tandem robot`.
 #pragma once
 #include <optional>
 #include <string>

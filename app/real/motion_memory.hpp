@@ -1,4 +1,4 @@
-// What first motions found wrong with real robots, kept beside their locks until one finds it right.
+// Failures of first motions of real robots, kept beside their locks until one succeeds.
 #pragma once
 #include <cstdint>
 #include <optional>

@@ -1,4 +1,4 @@
-// What the report and the table of a run say of its real robots and peers.
+// Real robots and peers in the report and the table of a run.
 #pragma once
 #include <string>
 #include <utility>

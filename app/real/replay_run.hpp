@@ -1,4 +1,4 @@
-// A replay of a record of a run with real robots: what it is made of, how it is judged, what it reports.
+// A replay of a record of a run with real robots: its parts, its judgement, its report.
 #pragma once
 #include <memory>
 #include <optional>

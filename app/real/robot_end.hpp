@@ -1,4 +1,4 @@
-// The end of `tandem robot`: what its report says of it, and its exit code.
+// The end of `tandem robot`: its part of the report, and its exit code.
 #pragma once
 #include <optional>
 #include <string>

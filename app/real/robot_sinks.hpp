@@ -1,4 +1,4 @@
-// What `tandem robot` shows and keeps of its robot: a record, a table on the terminal. A robot's board has neither.
+// Displays and files of `tandem robot`: a record, a table on the terminal. A robot's board has neither.
 #pragma once
 #include <functional>
 #include <memory>
@@ -21,7 +21,7 @@ class LoneRobot;
 
 namespace tandem::app {
 
-/// A robot and its controller, which outlive who shows them.
+/// A robot and its controller, which outlive their displays.
 struct ShownRobot {
   const core::Scenario& scenario;
   const hal::PluginLoader& loader;

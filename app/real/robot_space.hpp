@@ -1,4 +1,4 @@
-// A real robot as a space: who shows, draws, lists or records a space does the same with a robot that no world has.
+// A real robot as a space: displays, drawings, lists and records work on it as on a world's.
 #pragma once
 #include <cstdint>
 #include <memory>

@@ -1,4 +1,4 @@
-// What modules besides `real` add to a run of the command line: pictures, people who hold it, the window.
+// Additions of modules besides `real` to a run of the command line: pictures, held runs, the window.
 #pragma once
 #include <string>
 #include <string_view>

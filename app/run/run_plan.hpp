@@ -1,4 +1,4 @@
-// What the parts of one run share: made before them, and destroyed after them.
+// Shared data of the parts of one run: made before them, and destroyed after them.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -56,15 +56,15 @@ struct RunPlan {
   std::int64_t steps = 0;
   RunOutputs outputs;
   mixed_reality::MonotonicTime clock;
-  std::optional<mixed_reality::Pacer> pacer;  ///< of a run in real time that nobody else paces
+  std::optional<mixed_reality::Pacer> pacer;  ///< of a run in real time without another pace
 
   std::vector<std::unique_ptr<core::RunPart>> opened;  ///< parts with open files, until they are added
   RealRobots* real = nullptr;
-  bool peers = false;  ///< take part, in lock-step: nobody can go back
+  bool peers = false;  ///< take part, in lock-step: no way back
   core::LiveRun* live = nullptr;
   std::shared_ptr<const CommandLog> commands;
-  std::function<core::Drawing()> drawing;  ///< the picture as it would be written now; empty: nobody draws
-  std::function<void()> look;              ///< while real robots stand, because somebody paused the run
+  std::function<core::Drawing()> drawing;  ///< the picture as it would be written now; empty: no drawing
+  std::function<void()> look;              ///< while real robots stand, because the run is paused
 
   std::optional<RunResult> result;  ///< filled by the parts that finish
   std::string live_failure;         ///< what could not be done again

@@ -1,4 +1,4 @@
-// A sweep whose runs a cluster makes: hands batches of them to Slurm through a folder, and collects what comes of them.
+// A sweep on a cluster: hands batches of runs to Slurm through a folder, and collects their results.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -24,7 +24,7 @@ struct ClusterOptions {
 
 /// Makes `runs` as study::sweep does, on a cluster. First takes what is in the folder of a sweep that was interrupted,
 /// and waits for its jobs where they are still under way. Batches that end without having made all their runs, because
-/// a job was killed, say, are handed over anew as long as each attempt brings some. When every run is there the folder
+/// a job was killed, say, are handed over again as long as each attempt brings some. When every run is there the folder
 /// is removed. Ends early when `stop` is set: the jobs then go on by themselves.
 /// `say` is told once for each job that is handed over. Errors: Slurm refuses; batches bring nothing; `take` fails.
 hal::Status sweep_on_cluster(const study::Design& design, const std::vector<std::int64_t>& runs,

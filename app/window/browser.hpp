@@ -1,4 +1,4 @@
-// Opens a page in the browser of whoever sits at this machine.
+// Opens a page in the browser of this machine's user.
 #pragma once
 #include <string>
 

@@ -1,4 +1,4 @@
-// Watches the files that controllers of a run run, and has the run read them anew when somebody changes them.
+// Watches the files that controllers of a run run, and has the run read them again after changes.
 #pragma once
 #include <memory>
 

@@ -30,10 +30,10 @@ struct ViewedRun {
   const hal::Catalog& catalog;
   RealRobots* real = nullptr;            ///< null: none take part
   std::function<core::Drawing()> draw;   ///< the picture as it would be written now
-  const CommandLog* commands = nullptr;  ///< keeps what is commanded; null: nobody does
+  const CommandLog* commands = nullptr;  ///< keeps commands; may be null
 };
 
-/// Made, used and destroyed by the thread that steps, but for `log`. While nobody watches, a tick costs two atomic
+/// Made, used and destroyed by the thread that steps, but for `log`. Without viewers, a tick costs two atomic
 /// reads.
 class RunView {
  public:

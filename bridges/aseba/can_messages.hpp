@@ -16,7 +16,7 @@ struct CanMessagesSettings {
   double frames_per_s = 1850.0;
   std::size_t burst = 2 * kMostFrames;  ///< frames that may follow one another after a rest
   /// Frames that may wait for their turn; of more, `send` says that there is no room. Waiting is the business of
-  /// whoever can still change his mind.
+  /// the sender while it can still change its mind.
   std::size_t most_waiting = 32;
   /// What could not leave within this time is dropped: an old command must not fire late.
   hal::TimeNs send_timeout_ns = 100 * hal::kNsPerMs;

@@ -5,7 +5,7 @@
 //   alive > 0                                  -> alive - 1
 //   alive has just become 0                    -> the motors' words are set to rest, lapses + 1
 //
-// While alive is 0 it does nothing: whoever else writes to the motors, by hand or by another program, is left alone.
+// While alive is 0 it does nothing: other writers to the motors, people or programs, are left alone.
 #pragma once
 #include <string>
 #include <vector>

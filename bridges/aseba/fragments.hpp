@@ -5,7 +5,7 @@
 //               NORMAL (8 bytes) as long as more than 8 bytes remain, STOP (1 to 8 bytes).
 //
 // Fragments have no number and no checksum of their own: a lost NORMAL shows only in the message's length, which
-// whoever asked for it must check.
+// its caller must check.
 //
 // Sources: aseba-community/aseba, aseba/transport/can/can-net.c, aseba/transport/dashel_plugins/socketcan.cpp.
 #pragma once

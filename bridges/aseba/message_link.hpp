@@ -16,7 +16,7 @@ namespace tandem::bridges::aseba {
 enum class Carrier : std::uint8_t {
   Up,
   Down,  ///< nothing passes at present (bus off, interface down, being opened); comes up by itself
-  Gone   ///< must be opened anew
+  Gone   ///< must be reopened
 };
 
 /// Counted since the link was made. What was sent half or dropped on the way out is `dropped`, not `sent`.
@@ -29,7 +29,7 @@ struct MessageLinkStatistics {
   std::uint64_t times_stuck = 0;  ///< the queue did not move for too long; CAN: does anybody acknowledge?
   std::uint64_t broken_in = 0;    ///< arrived incomplete or not understood by the framing
   std::uint64_t times_down = 0;
-  std::uint64_t times_up = 0;  ///< came up again, or was opened anew
+  std::uint64_t times_up = 0;  ///< came up again, or was reopened
 };
 
 class MessageLink {
@@ -54,7 +54,7 @@ class MessageLink {
   virtual std::string name() const = 0;
 };
 
-/// Opens a link, or opens it anew when it is Gone. May block for seconds: call it from a worker thread.
+/// Opens a link, or reopens it when it is Gone. May block for seconds: call it from a worker thread.
 using MessageLinkOpener = std::function<hal::Result<std::unique_ptr<MessageLink>>()>;
 
 }  // namespace tandem::bridges::aseba

@@ -1,4 +1,4 @@
-// The nodes on one robot's bus: who is there, what variables they have, what is in them.
+// The nodes on one robot's bus: presence, variables, values.
 //
 //   absent, lost --anything is heard--> present --the same description twice--> ready
 //   present --a description that cannot be--> refused --a possible one--> present
@@ -24,7 +24,7 @@
 namespace tandem::bridges::aseba {
 
 struct NetworkTiming {
-  hal::TimeNs ping_ns = 300 * hal::kNsPerMs;      ///< between rounds of asking who is there
+  hal::TimeNs ping_ns = 300 * hal::kNsPerMs;      ///< between rounds of asking for nodes
   hal::TimeNs describe_ns = 150 * hal::kNsPerMs;  ///< without progress of a description until it is asked for again
   hal::TimeNs refused_ns = 400 * hal::kNsPerMs;   ///< until a node whose description was refused is asked again
   hal::TimeNs reply_ns = 100 * hal::kNsPerMs;     ///< for an answer to a read
@@ -46,9 +46,9 @@ struct NetworkStatistics {
   std::uint64_t messages = 0;
   std::uint64_t not_understood = 0;  ///< their payload is not that of their type, or the type is unknown
   std::uint64_t other_hosts = 0;     ///< messages that only a host sends: there is another one on this bus
-  std::uint64_t rounds = 0;          ///< of asking who is there
+  std::uint64_t rounds = 0;          ///< of asking for nodes
   std::uint64_t events = 0;
-  std::uint64_t events_dropped = 0;  ///< nobody took them in time; the oldest go first
+  std::uint64_t events_dropped = 0;  ///< not taken in time; the oldest go first
   std::uint64_t stops = 0;           ///< calls of `forget_writes`
   std::uint64_t carrier_losses = 0;
 };

@@ -41,7 +41,7 @@ class DescriptionDraft {
   static constexpr std::size_t kMostNames = 1024;      ///< of local events, and of native functions
   static constexpr std::size_t kMostMemory = 16384;    ///< words; the modules' processors have less
 
-  /// Starts anew.
+  /// Restarts.
   void begin(const Description& description);
   void add(const NamedVariable& variable);
   void add(const LocalEvent& event);
@@ -87,7 +87,7 @@ struct NodeStatistics {
   std::uint64_t asked_again = 0;
   std::uint64_t unanswered = 0;    ///< reads given up
   std::uint64_t wrong_length = 0;  ///< answers with a part missing or too much
-  std::uint64_t unasked = 0;       ///< answers that nobody here had asked for
+  std::uint64_t unasked = 0;       ///< answers that were not asked for here
   std::uint64_t writes = 0;        ///< sent
   std::uint64_t refused = 0;       ///< reads and writes asked for while not Ready, or outside of its memory
   std::uint64_t events = 0;
@@ -126,7 +126,7 @@ struct Node {
   NodeState state = NodeState::Absent;
   std::uint16_t version = 0;    ///< of the protocol, as last heard; 0: not yet
   NodeDescription description;  ///< the last one believed
-  /// Grows whenever it becomes Ready anew: addresses may be others, and what was written is perhaps forgotten.
+  /// Grows whenever it becomes Ready again: addresses may be others, and what was written is perhaps forgotten.
   std::uint64_t generation = 0;
   hal::TimeNs heard_ns = 0;
   std::string trouble;  ///< why it is Refused, or what stopped its program; for people

@@ -6,7 +6,7 @@
 //   each tick:  bridge.latch(tick, now);  controller step;  bridge.commit(now);
 //   ~NodeBridge: the robot is stopped.
 //
-// The thread takes in what arrives, answers time-outs, opens the link anew when it was lost, and stops the robot when
+// The thread takes in what arrives, answers time-outs, reopens the link when it was lost, and stops the robot when
 // the loop stops committing. When this process is killed, a guardian (bridges/guardian), where one was started, stops
 // the robot.
 //
@@ -36,7 +36,7 @@ namespace tandem::bridges::aseba {
 template <class Parts>
 struct NodeBridgeSettings {
   typename Parts::Settings driver;
-  std::string link = {};                          ///< as the experiment says it, for whoever stops the robot without us
+  std::string link = {};                          ///< as the experiment says it, to stop the robot without us
   hal::TimeNs shutdown_ns = 300 * hal::kNsPerMs;  ///< how long the end waits for the robot to confirm its stop
 };
 

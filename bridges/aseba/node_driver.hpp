@@ -1,7 +1,7 @@
-// A robot of ASEBA nodes without threads: its bus, the wiring of its ports, and safety, driven by whoever owns the
+// A robot of ASEBA nodes without threads: its bus, the wiring of its ports, and safety, driven by the owner of the
 // time.
 //   absent --link up--> searching --every needed node is there--> ready --its values came--> active
-//   active --a needed node does not answer, or describes itself anew--> suspect --it answers--> active
+//   active --a needed node does not answer, or describes itself again--> suspect --it answers--> active
 //   active, suspect --a needed node is silent, or nothing passes on the link--> lost --it is back--> ready
 //
 // A tick of the caller:   latch(tick, now) -> controller step -> commit(now)
@@ -12,7 +12,7 @@
 // Nodes may keep their last command for ever. So the robot is told to rest in every case of the table, and told again
 // until it has confirmed:
 //   needed node lost, link lost, not yet active  -> rest; drives on once all answer again
-//   such a node restarted: it holds zeros that nobody wrote, or its counters begin anew
+//   such a node restarted: it holds zeros that were never written, or its counters start again
 //                                                -> rest, and told as a stop of the robot's own
 //   no commit for `command_timeout_ns`           -> rest, until the next commit
 //   `stop`                                       -> rest until `resume`
@@ -61,7 +61,7 @@ class NodeRobot : public BridgedRobot {
   NodeRobot(std::string_view noun, const hal::RobotKind& kind, RobotSettings settings,
             std::span<const hal::PortType* const> types);
 
-  /// Whether somebody reads or writes the port, be it only the odometry. `type` is one that the robot was made with.
+  /// Whether the port is read or written, be it only the odometry. `type` is one that the robot was made with.
   bool uses(const hal::PortType& type) const noexcept;
   template <class T>
   bool uses() const noexcept {
@@ -103,7 +103,7 @@ class NodeWiring {
   hal::TimeNs rested_ns_ = 0;  // when everything was last told to rest
 
  private:
-  std::uint64_t seen_ = ~std::uint64_t{0};  // fingerprint of who is there
+  std::uint64_t seen_ = ~std::uint64_t{0};  // fingerprint of the nodes
 };
 
 struct NodeDriverSettings {
@@ -121,7 +121,7 @@ struct NodeDriverStatistics {
   std::uint64_t commits = 0;
   std::uint64_t clamped = 0;         ///< commands beyond the robot's limits
   std::uint64_t not_finite = 0;      ///< commands with NaN or infinity: made safe
-  std::uint64_t rearmed = 0;         ///< times that driving began anew after an interruption
+  std::uint64_t rearmed = 0;         ///< times that driving started again after an interruption
   std::uint64_t watchdog_stops = 0;  ///< for want of commits
   std::uint64_t link_stops = 0;      ///< because a needed node, or the link, did not answer
   std::uint64_t restarts = 0;        ///< of nodes that it never drives without, since it was first active
@@ -374,7 +374,7 @@ class NodeDriver {
   bool was_active_ = false;
   bool halted_ = false;
   bool driving_ = false;      // commands, and not rest, were sent last
-  bool interrupted_ = false;  // the next driving begins anew
+  bool interrupted_ = false;  // the next driving starts again
   hal::TimeNs last_commit_ns_ = 0;
   StallMeter stalls_;
   hal::TimeNs latched_ns_ = 0;

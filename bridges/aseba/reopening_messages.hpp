@@ -1,4 +1,4 @@
-// A message link that opens itself anew whenever it is gone.
+// A message link that reopens itself whenever it is gone.
 #pragma once
 #include <memory>
 #include <optional>

@@ -65,7 +65,7 @@ class ResidentProgram {
   const NodeProgram& program() const noexcept { return program_; }
   State state() const noexcept { return state_; }
   bool running() const noexcept { return state_ == State::Running; }
-  /// It ran, and nobody knows that it does not any more.
+  /// It ran, and nothing shows that it stopped.
   bool ran() const noexcept { return ran_; }
   hal::TimeNs heard_ns() const noexcept { return heard_ns_; }
   std::uint64_t loads() const noexcept { return loads_; }  ///< since `begin`

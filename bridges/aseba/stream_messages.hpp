@@ -3,7 +3,7 @@
 //   uint16 length of the payload | uint16 source | uint16 type | payload          little-endian
 //
 // There is no mark to find the next message by. When a length or a type cannot be, or a message does not end, the two
-// sides are out of step: the link is Gone and must be opened anew.
+// sides are out of step: the link is Gone and must be reopened.
 //
 // Source: aseba-community/aseba, aseba/common/msg/msg.cpp, aseba/transport/buffer/vm-buffer.c.
 #pragma once

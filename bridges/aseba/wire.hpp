@@ -1,4 +1,4 @@
-// ASEBA messages as bytes: what every framing carries.
+// ASEBA messages as bytes: the part common to every framing.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -23,7 +23,7 @@ constexpr void write_u16(std::uint8_t* bytes, std::uint16_t value) noexcept {
   bytes[1] = static_cast<std::uint8_t>(value >> 8U);
 }
 
-/// A message that lies in somebody else's buffer.
+/// A message that lies in a foreign buffer.
 struct MessageView {
   std::uint16_t source = 0;
   std::uint16_t type = 0;
@@ -31,7 +31,7 @@ struct MessageView {
   hal::TimeNs at_ns = 0;  ///< arrival of its last byte, on the link's clock
 };
 
-/// A row of int16, little-endian, that lies in somebody else's buffer.
+/// A row of int16, little-endian, that lies in a foreign buffer.
 class Words {
  public:
   constexpr Words() = default;

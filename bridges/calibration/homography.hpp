@@ -1,4 +1,4 @@
-// Homographies between a plane and pictures without distortion, and what follows for a camera [Hartley 2003].
+// Homographies between a plane and pictures without distortion, and cameras from them [Hartley 2003].
 #pragma once
 #include <optional>
 #include <span>

@@ -1,4 +1,4 @@
-// A camera: its lens, where it hangs, and what follows for points and pixels.
+// A camera: its lens, its place, and projection of points to pixels and back.
 //
 // Pixels count from the picture's upper left corner, x to the right, y down; the first pixel's centre is (0.5, 0.5).
 // Frame C: x right, y down, z forward, out of the lens. W is the arena's frame.

@@ -1,4 +1,4 @@
-// CAN links: what carries frames, whatever it is made of.
+// CAN links: carriers of frames of any make.
 //
 // One thread at a time uses a link. `send` and `receive` never wait. Frames leave in the order in which they were
 // taken: higher layers cut messages into frames whose identifiers say nothing about their order.
@@ -17,10 +17,10 @@ namespace tandem::bridges {
 enum class BusState : std::uint8_t {
   Active,
   Warning,  ///< 96 errors and more: cable, termination, bit rate?
-  Passive,  ///< 128 and more; often: nobody acknowledges
+  Passive,  ///< 128 and more; often for want of acknowledgements
   BusOff,   ///< the controller gave up; nothing passes until it is restarted
   Down,     ///< the interface is switched off; becomes Active by itself when it is switched on
-  Gone      ///< adapter pulled out, line hung up: the link must be opened anew
+  Gone      ///< adapter pulled out, line hung up: the link must be reopened
 };
 /// Whether frames can pass.
 constexpr bool can_pass(BusState state) noexcept {
@@ -43,7 +43,7 @@ struct CanStatistics {
   std::uint64_t overrun = 0;         ///< frames lost on arrival, for want of room in adapter or kernel
   std::uint64_t malformed = 0;       ///< arrived and were no frames
   std::uint64_t error_reports = 0;   ///< by the controller: error frames, error messages of an adapter
-  std::uint64_t no_acknowledge = 0;  ///< of them: nobody acknowledged a frame
+  std::uint64_t no_acknowledge = 0;  ///< of them: frames without acknowledgement
   std::uint64_t send_timeouts = 0;   ///< of them: the controller could not send in time
   std::uint64_t send_failures = 0;   ///< an adapter said that it did not take a frame
   std::uint64_t bus_offs = 0;        ///< times that the state became BusOff
@@ -72,7 +72,7 @@ class CanLink {
   virtual std::string name() const = 0;
 };
 
-/// Opens a link, or opens it anew when it is Gone. May block for seconds: call it from a worker thread.
+/// Opens a link, or reopens it when it is Gone. May block for seconds: call it from a worker thread.
 using CanOpener = std::function<hal::Result<std::unique_ptr<CanLink>>()>;
 
 /// The state of a bus with the counting of its changes; what every link holds.

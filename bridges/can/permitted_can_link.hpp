@@ -6,7 +6,7 @@
 
 namespace tandem::bridges {
 
-/// Gone from the moment when the permit was withdrawn, also where it has been granted anew since.
+/// Gone from the moment when the permit was withdrawn, also where it has been granted again since.
 class PermittedCanLink final : public CanLink {
  public:
   /// `turn`: of the permit, before `link` was opened.

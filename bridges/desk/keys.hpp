@@ -11,7 +11,7 @@
 namespace tandem::bridges::desk {
 
 struct DeskKey {
-  std::string who;  ///< "*": anybody who has the secret, by any name
+  std::string who;  ///< "*": the secret counts, by any name
   hal::UserRole role = hal::UserRole::Viewer;
   std::string secret;
 };

@@ -41,7 +41,7 @@ std::string to_json(hal::TimeNs at, std::string_view event, const EventFields& f
 /// Appends to a file and flushes after every line, so that a killed emulator loses none.
 class EventLog {
  public:
-  /// Starts `path` anew. Errors: the file cannot be written.
+  /// Starts `path` again. Errors: the file cannot be written.
   static hal::Result<std::unique_ptr<EventLog>> open(const std::string& path);
 
   void write(hal::TimeNs at, std::string_view event, const EventFields& fields);

@@ -66,7 +66,7 @@ class FaultSchedule {
     return std::any_of(faults_.begin(), faults_.end(),
                        [&](const Fault& f) { return f.kind == kind && is_at_work(f, at); });
   }
-  /// Whether it happens now, where it does so with a probability; each call draws anew.
+  /// Whether it happens now, where it does so with a probability; each call draws again.
   bool happens(Kind kind, hal::TimeNs at) {
     bool any = false;
     for (const Fault& f : faults_) {

@@ -1,4 +1,4 @@
-// Messages that an emulated robot hears, and its scanner's heads: what emulators with such devices do alike.
+// Messages that an emulated robot hears, and its scanner's heads: common code of emulators with such devices.
 #pragma once
 #include <cstdint>
 #include <utility>

@@ -17,7 +17,7 @@ class HostLine {
   virtual int descriptor() const noexcept = 0;
   /// What has come in, up to the size of `buffer`; 0 when nothing has. Errors: the line has gone for good.
   virtual hal::Result<std::size_t> read(std::span<std::uint8_t> buffer) = 0;
-  /// @returns how many bytes went out; the rest is lost, as on a wire that nobody listens at
+  /// @returns how many bytes went out; the rest is lost, as on a wire without a listener
   virtual std::size_t write(std::span<const std::uint8_t> bytes) = 0;
   /// The baud rate that the host has set on its side, 0 for one that is not usual; the robot's own where there is none.
   virtual unsigned long host_baud() const = 0;

@@ -31,7 +31,7 @@ class SerialPort final : public HostLine {
   /// What has come in, up to the size of `buffer`; 0 when nothing has. Errors: the device has gone.
   hal::Result<std::size_t> read(std::span<std::uint8_t> buffer) override;
 
-  /// @returns how many bytes went out; the rest is lost, as on a wire that nobody listens at
+  /// @returns how many bytes went out; the rest is lost, as on a wire without a listener
   std::size_t write(std::span<const std::uint8_t> bytes) override;
 
   /// The baud rate that the host has set on its side of a pseudo-terminal, 0 for one that is not usual; the robot's own

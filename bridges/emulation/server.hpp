@@ -1,4 +1,4 @@
-// Server of emulated robots and trackers: from the start until it is told to stop, and those of robots on two wheels.
+// Server of emulated robots and trackers, from start to stop, and that of robots on two wheels.
 #pragma once
 #include <algorithm>
 #include <atomic>
@@ -49,7 +49,7 @@ template <class Body>
 struct WheeledOptions : ServerOptions, WheeledParams {
   Body* body = nullptr;          ///< must outlive the run; none: one of its own, in `arena` if there is one
   std::optional<Arena> arena{};  ///< none: open ground
-  std::function<std::optional<BodyPose>()> pose_elsewhere{};  ///< of `body`, the newest; none: nobody knows
+  std::function<std::optional<BodyPose>()> pose_elsewhere{};  ///< of `body`, the newest; none: unknown
 };
 
 /// Fills in what every emulator's options have.

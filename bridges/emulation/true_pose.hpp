@@ -1,4 +1,4 @@
-// True poses of emulated robots' bodies: rolled on, and told to logs, which emulated trackers read.
+// True poses of emulated robots' bodies: rolled on, and written to logs, which emulated trackers read.
 #pragma once
 #include <algorithm>
 #include <cmath>

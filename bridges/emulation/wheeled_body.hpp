@@ -33,7 +33,7 @@ class WheeledBody {
   void advance(hal::TimeNs now);
   /// The firmware has its wheels turn like this, from `now` on.
   void tell(hal::TimeNs now, double left_m_s, double right_m_s);
-  /// Somebody puts it elsewhere: moved in the frame of the world, and turned.
+  /// It is put elsewhere: moved in the frame of the world, and turned.
   void carry(hal::TimeNs now, double x_m, double y_m, double turn_rad);
   /// Something holds it: its wheels turn, and it does not move.
   void hold(hal::TimeNs now, bool held);

@@ -6,7 +6,7 @@
 //   reading if (auto ready = bridge.wait_active(5 s); !ready) … each tick:  bridge.latch(tick, now);  controller step;
 //   bridge.commit(now);      (bridge.fault(now, what) if it threw) ~EpuckBridge: the robot is stopped.
 //
-// The thread stamps bytes when they arrive, answers time-outs, opens the link anew when it was lost, and stops the
+// The thread stamps bytes when they arrive, answers time-outs, reopens the link when it was lost, and stops the
 // robot when the loop stops committing. The stock firmware has no watchdog of its own: when the link is cut while the
 // robot moves, it drives on until the link is back; when this process is killed, until a guardian (bridges/guardian),
 // where one was started, stops it. Keep speeds small where that matters.
@@ -22,7 +22,7 @@ namespace tandem::bridges::epuck {
 
 struct BridgeSettings {
   DriverSettings driver;
-  std::string link = {};                          ///< as the experiment says it, for whoever stops the robot without us
+  std::string link = {};                          ///< as the experiment says it, to stop the robot without us
   std::string firmware = "auto";                  ///< which one it must run; with another one it never becomes Active
   hal::TimeNs reopen_ns = 100 * hal::kNsPerMs;    ///< between tries to open the link
   hal::TimeNs shutdown_ns = 300 * hal::kNsPerMs;  ///< how long the end waits for the robot to confirm its stop

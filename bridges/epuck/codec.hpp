@@ -174,7 +174,7 @@ class WifiReader {
     None,
     Sensors,   ///< `sensors()` is complete
     Empty,     ///< the robot tells nothing: nothing was asked for
-    OutOfStep  ///< no packet begins so: what follows means nothing until the link is opened anew
+    OutOfStep  ///< no packet begins so: what follows means nothing until the link is reopened
   };
   Event push(std::uint8_t byte) noexcept;
   /// As `decode_all_sensors` takes them.
@@ -186,7 +186,7 @@ class WifiReader {
   static constexpr std::size_t kImage = 160 * 120 * 2;
   std::array<std::uint8_t, kBody> body_{};
   std::size_t size_ = 0;
-  std::size_t skip_ = 0;  // of an image that nobody asked for
+  std::size_t skip_ = 0;  // of an unrequested image
   bool in_body_ = false;
   bool lost_ = false;
 };

@@ -23,7 +23,7 @@ enum class WireForm : std::uint8_t {
 
 enum class SessionState : std::uint8_t {
   Absent,     ///< there was no link yet
-  Handshake,  ///< finding out who is there
+  Handshake,  ///< identifying the robot
   Ready,      ///< known and stopped; the first answer is awaited
   Active,     ///< answers come
   Suspect,    ///< out of step or silent; resynchronising
@@ -91,7 +91,7 @@ struct SessionStatistics {
   std::uint64_t wrong_speeds = 0;   ///< readings of other commanded speeds than told
   std::uint64_t encoder_jumps = 0;  ///< wheel counters farther on than a wheel can turn
   std::uint64_t encoder_rebased =
-      0;  ///< counters taken up anew after a restart or a long loss: motion in between unknown
+      0;  ///< counters taken up again after a restart or a long loss: motion in between unknown
   std::uint64_t unasked_bytes = 0;       ///< while nothing was asked
   std::uint64_t not_understood = 0;      ///< "z,Command not found"
   std::uint64_t cut_lines = 0;           ///< longer than any line that the firmware sends
@@ -147,7 +147,7 @@ class Conversation {
   void shut_down(hal::TimeNs now) noexcept;
   /// Nothing is awaited or waits to be sent.
   virtual bool idle() const noexcept = 0;
-  /// The link is of no more use, although it is open: close it and open it anew.
+  /// The link is of no more use, although it is open: close it and reopen it.
   virtual bool wants_new_link() const noexcept { return false; }
   /// Of `output()`, only a part could be sent.
   virtual void sent_in_part() noexcept {}
@@ -193,7 +193,7 @@ class Conversation {
   bool wants_other_speeds() const noexcept { return wanted_.left != sent_.left || wanted_.right != sent_.right; }
   /// The stop is confirmed.
   void note_rest() noexcept;
-  /// It is known who is there, and it stands.
+  /// The robot is identified, and it stands.
   void note_handshake() noexcept;
   /// The link hung up. False: there was none.
   bool lose_link(const char* why) noexcept;

@@ -1,4 +1,4 @@
-// One e-puck without threads: robot, session and safety, driven by whoever owns the time.
+// One e-puck without threads: robot, session and safety, driven by the owner of the time.
 //
 // A tick of the caller:   latch(tick, now) -> controller step -> commit(now) -> pump(link, now)
 // Between ticks, whenever bytes may have come or `next_deadline()` is due, and at least each 20 ms: pump(link, now).
@@ -30,7 +30,7 @@ struct DriverStatistics {
   std::uint64_t commits = 0;
   std::uint64_t clamped = 0;         ///< commands beyond the robot's speed
   std::uint64_t not_finite = 0;      ///< commands with NaN or infinity: made 0
-  std::uint64_t rearmed = 0;         ///< times that driving began anew after an interruption
+  std::uint64_t rearmed = 0;         ///< times that driving started again after an interruption
   std::uint64_t watchdog_stops = 0;  ///< for want of commits
   std::uint64_t refused_bytes = 0;   ///< that the link did not take
   std::uint64_t late_answers = 0;    ///< not there when they were to be latched
@@ -83,7 +83,7 @@ class EpuckDriver {
   const Conversation& session() const noexcept { return *session_; }
   /// Fills in what the robot has told of itself since the link was opened.
   void identify(RobotIdentity& identity) const;
-  /// The link is of no more use, although it is open: close it, say `link_gone`, open it anew.
+  /// The link is of no more use, although it is open: close it, say `link_gone`, reopen it.
   bool wants_new_link() const noexcept { return session_->wants_new_link(); }
   const DriverStatistics& statistics() const noexcept { return statistics_; }
   Odometry odometry() const noexcept;
@@ -112,7 +112,7 @@ class EpuckDriver {
   SessionState logged_ = SessionState::Absent;
   bool halted_ = false;
   bool moving_ = false;            // speeds other than 0 were handed to the session
-  bool interrupted_ = false;       // the next driving begins anew
+  bool interrupted_ = false;       // the next driving starts again
   std::uint64_t armed_epoch_ = 0;  // 0: not yet
   hal::TimeNs last_commit_ns_ = 0;
   hal::TimeNs next_latch_ns_ = 0;  // foreseen; 0: not yet

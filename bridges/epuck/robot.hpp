@@ -10,7 +10,7 @@
 namespace tandem::bridges::epuck {
 
 /// Ports of one e-puck. A port that was taken makes its sensor be asked for. Range-and-bearing has no serial form: its
-/// reading stays absent unless somebody relays messages into it, its command is kept for whoever relays it.
+/// reading stays absent unless messages are relayed into it, its command is kept for the relay.
 class EpuckRobot final : public BridgedRobot {
  public:
   explicit EpuckRobot(RobotSettings settings);

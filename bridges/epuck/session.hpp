@@ -10,7 +10,7 @@
 // else is said to a robot that may be reading something else. Then `V` asks who is there. Where firmwares answer with
 // different lengths (`M`, `b`) the robot is asked once, followed by `E`, which every firmware answers: what comes
 // before E's four zeros is the length. After a short outage of a robot that is known both are left out: 0.12 s over a
-// cable. Whenever synchronisation was lost, the wanted speeds are forgotten: the robot stands until it is asked anew.
+// cable. Whenever synchronisation was lost, the wanted speeds are forgotten: the robot stands until it is asked again.
 // The wheel counters go on where they were.
 //
 // What is told and what is asked leave separately: commands at once, questions when their answer is needed. Each packet
@@ -22,7 +22,7 @@
 // second question asks for one quantity more where their sizes would not tell them apart, and what has come is judged
 // by size and speeds once both have come or the line is quiet. The robot is stopped when neither comes, or anything
 // else does. When only the first one comes the second is overdue in its turn. A late answer is dated with its question:
-// nobody knows when after that the robot measured.
+// the robot measured at an unknown time after that.
 #pragma once
 #include <array>
 #include <cstdint>

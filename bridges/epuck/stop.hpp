@@ -74,7 +74,7 @@ class StopProcedure final : public StopTalk {
  public:
   explicit StopProcedure(const StopTiming& timing = {}) noexcept : timing_(timing), quiet_ns_(timing.quiet_ns) {}
 
-  /// Begins anew: the first burst is due at once. What is under way may still come for `round_trip_ns`.
+  /// Starts again: the first burst is due at once. What is under way may still come for `round_trip_ns`.
   void begin(hal::TimeNs now, hal::TimeNs round_trip_ns) noexcept;
   void begin(hal::TimeNs now) noexcept override { begin(now, 0); }
   void on_byte(std::uint8_t byte, hal::TimeNs at) noexcept;

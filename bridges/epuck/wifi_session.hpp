@@ -2,11 +2,11 @@
 //
 //   absent --link up--> handshake --stop confirmed--> ready --sensors--> active
 //   active --silent twice, odd values, moves untold--> suspect --stop confirmed--> ready
-//   suspect, handshake --silent--> lost: the link is to be opened anew --stop confirmed--> ready
+//   suspect, handshake --silent--> lost: the link is to be reopened --stop confirmed--> ready
 //
 // Every command has 21 bytes, sets everything and asks for all sensors, which come as 105. The radio goes on telling
 // them as long as the link stands; so an answer belongs to no question, and readings are dated by their arrival. After
-// a silence the sensors that come at once one after the other have waited on the way, for nobody knows how long: the
+// a silence the sensors that come at once one after the other have waited on the way, for an unknown time: the
 // first that come at the robot's own pace again are believed. It checks nothing: a command of which a byte is missing
 // makes it read all that follow at the wrong place, and obey. TCP loses none; where a command could be sent in part
 // only, the link is given up, and a new one begins in step.
@@ -16,7 +16,7 @@
 // when the link is gone.
 //
 // One host at a time: a second one is let in, and hears nothing until the first has hung up. When nothing comes for
-// 1.5 s the link is opened anew. That a robot was switched off shows in the same way.
+// 1.5 s the link is reopened. That a robot was switched off shows in the same way.
 //
 // Source: e-puck2/e-puck2_esp32, socket_e-puck2.c; Webots' e-puck2_server.c.
 #pragma once

@@ -1,4 +1,4 @@
-// Faults on demand: what may go wrong between a robot and its host, at given times and from a seed.
+// Faults on demand between a robot and its host, at given times and from a seed.
 #pragma once
 #include <array>
 #include <cstdint>

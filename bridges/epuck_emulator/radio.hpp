@@ -20,7 +20,7 @@ namespace tandem::bridges::epuck_emulator {
 /// In explicit time, without clock, thread or socket. Times of all calls must not decrease.
 class Radio {
  public:
-  /// `firmware` must outlive this, and be fed by nobody else.
+  /// `firmware` must outlive this, and be fed by this alone.
   explicit Radio(Firmware& firmware) : firmware_(firmware) {}
 
   /// Another host has connected: what the last one had sent in part is forgotten.

@@ -6,9 +6,9 @@
 //   each tick:  bridge.latch(tick, now);  controller step;  bridge.commit(now);
 //   ~EyebotBridge: the robot hovers, then lands.
 //
-// The thread takes in what arrives, beats the hub's heart, says again what is not answered, opens the link anew when
+// The thread takes in what arrives, beats the hub's heart, says again what is not answered, reopens the link when
 // our own heartbeat does not come back to us, and has the robot hover when the loop stops committing. When this process
-// is killed its guardian (bridges/guardian) has the robot hover and land; where nobody is left, the robot does so
+// is killed its guardian (bridges/guardian) has the robot hover and land; without one, the robot does so
 // itself.
 #pragma once
 #include <atomic>
@@ -29,7 +29,7 @@ using LcmOpener = std::function<hal::Result<std::shared_ptr<lcm_bus::LcmLink>>()
 struct BridgeSettings {
   DriverSettings driver;  ///< session 0: one is drawn
   ShutdownSettings shutdown = {};
-  std::string url = {};    ///< of the link, as whoever opens it after us must write it
+  std::string url = {};    ///< of the link, as the next to open it must write it
   SendPermit permit = {};  ///< asked before everything that is said
 };
 

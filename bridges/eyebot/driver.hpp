@@ -1,7 +1,7 @@
 // One eye-bot without threads: what it says becomes readings, commands become what it is told, safety lies between;
-// driven by whoever owns the time.
+// driven by the owner of the time.
 //
-//   absent --a heartbeat--> ready --its status, a valid place, and nobody else for 300 ms--> active
+//   absent --a heartbeat--> ready --its status, a valid place, and no other hub for 300 ms--> active
 //   active --three heartbeats missing, or its status, or a second robot of its name, or a new start of it, or its own
 //            fail-safe--> suspect --all is well--> active
 //   active, suspect --no heartbeat for two seconds--> lost --it beats again--> active
@@ -12,7 +12,7 @@
 //
 // A robot in the air must not be left to itself, and never with its motors off:
 //   not active, or no commit for `command_timeout_ns` -> hover, until the next commit
-//   it was started anew, saved itself, its clock was set -> counted as a stop, even when it is well at once
+//   it was restarted, saved itself, its clock was set -> counted as a stop, even when it is well at once
 //   `stop`                                            -> hover until `resume`; land when its battery is low
 //   `land`                                            -> land, then motors off
 //   command not finite, or beyond the limits          -> hover, or clamped; counted
@@ -93,9 +93,9 @@ struct DriverStatistics {
   std::uint64_t not_understood = 0;   ///< messages of the robot that are damaged
   std::uint64_t clamped = 0;          ///< commands beyond the robot's limits
   std::uint64_t not_finite = 0;       ///< commands with NaN or infinity: made safe
-  std::uint64_t rearmed = 0;          ///< times that flying began anew after an interruption
+  std::uint64_t rearmed = 0;          ///< times that flying started again after an interruption
   std::uint64_t watchdog_stops = 0;   ///< for want of commits
-  std::uint64_t link_stops = 0;       ///< because the robot was not active any more, or had begun anew by itself
+  std::uint64_t link_stops = 0;       ///< because the robot was not active any more, or had restarted by itself
   std::uint64_t saved_itself = 0;     ///< times that it went to safety: not for a command that came late
   std::uint64_t recovered = 0;        ///< times it became Active again
   std::uint64_t lost = 0;             ///< times it became Lost
@@ -162,8 +162,8 @@ class EyebotDriver {
   const ClockEstimator& clock() const noexcept { return clock_; }
   const ModeOrders& orders() const noexcept { return orders_; }
   const PlaceGate& places() const noexcept { return place_gate_; }
-  /// Goes on with numbers that are so much newer: somebody else has spoken in our name meanwhile. The order that is out
-  /// is given anew.
+  /// Goes on with numbers that are so much newer: another has spoken in our name meanwhile. The order that is out
+  /// is given again.
   void skip_ahead(std::uint32_t by) noexcept;
 
  private:
@@ -284,14 +284,14 @@ class EyebotDriver {
   hal::TimeNs goal_since_ns_ = 0;
   bool reached_ = false;  // the goal, while it is not to obey
   bool cut_ = false;
-  bool steers_ = false;  // somebody commands flight
+  bool steers_ = false;  // flight is commanded
   hal::FlightOrder order_ = hal::FlightOrder::Fly;
   float order_m_s_ = 0.0F;
   bool pending_ = false;
   bool may_fly_ = false;
   Action ordered_ = Action::Nop;     // which was said last
   Told setpoint_ = Told::Heartbeat;  // which was said last; Heartbeat: none
-  bool interrupted_ = false;         // the next flying begins anew
+  bool interrupted_ = false;         // the next flying starts again
   StallMeter stalls_;
   hal::TimeNs now_ns_ = 0;  // of the last `advance`
   bool committed_ = false;

@@ -43,7 +43,7 @@ class Inbox {
   void wait(hal::TimeNs timeout_ns);
   void wake();
 
-  /// Who else is heard; thread-safe as well.
+  /// Other speakers that are heard; thread-safe as well.
   Neighbours& neighbours() noexcept { return neighbours_; }
 
   TopicStatistics statistics(Topic topic) const;

@@ -10,13 +10,13 @@ namespace tandem::bridges::eyebot {
 /// Whose a message is.
 enum class Sender : std::uint8_t {
   Current,    ///< the robot's, as known
-  Restarted,  ///< the robot's, which has just been started anew
+  Restarted,  ///< the robot's, which has just been restarted
   Other       ///< of a start before, or of a second robot of that name: not to be used
 };
 
 enum class Pulse : std::uint8_t { Never, Beating, Stale, Lost };
 
-/// A robot draws a number at its start, its session. Another one is taken for the robot started anew once the one
+/// A robot draws a number at its start, its session. Another one is taken for the robot restarted once the one
 /// before has been silent for `kTrial`; when that speaks on, there are two robots of one name, and the one that was
 /// there first stays the robot. A session that was replaced does not come back unless the other is lost. Times are
 /// CLOCK_MONOTONIC. Not thread-safe.

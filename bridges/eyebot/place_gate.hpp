@@ -9,7 +9,7 @@ namespace tandem::bridges::eyebot {
 
 /// The first place is believed. Others must lie within what a robot flies at `fastest_m_s`, and `kSlack_m` for the
 /// noise of its positioning. When places elsewhere agree with one another for `kLasting`, the positioning has begun
-/// anew there: they are believed from then on, and the jump is counted. Not thread-safe.
+/// again there: they are believed from then on, and the jump is counted. Not thread-safe.
 class PlaceGate {
  public:
   static constexpr double kSlack_m = 0.25;

@@ -31,7 +31,7 @@ void read(const eyebot_messages::Blobs& m, hal::PerspectiveCamera& port) noexcep
 /// Adds the packets; payloads are cut to what the port holds.
 void add(const eyebot_messages::Rab& m, hal::RangeAndBearing& port) noexcept;
 
-/// `lower`, `upper`, `camera`: null for lights that nobody commands; the robot then keeps them as they are.
+/// `lower`, `upper`, `camera`: null for lights without commands; the robot then keeps them as they are.
 void write(const hal::RingLeds* lower, const hal::UpperRingLeds* upper, const hal::CameraLed* camera,
            eyebot_messages::Leds& m) noexcept;
 void write(const hal::PanTiltDrive& port, eyebot_messages::CmdPanTilt& m) noexcept;

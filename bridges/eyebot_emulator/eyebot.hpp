@@ -44,7 +44,7 @@ class Eyebot {
  public:
   struct Options {
     std::string name = "eb0";  ///< in the names of channels: letters, digits, _ and -, at most 24
-    std::int32_t session = 1;  ///< drawn by whoever starts it; not 0
+    std::int32_t session = 1;  ///< drawn by its starter; not 0
     bool clock_synced = true;  ///< orders and setpoints whose stamps are 250 ms off are stale
     double flight_s = 600.0;   ///< on a full battery
     double image_hz = 0.0;     ///< 0 to 2

@@ -1,4 +1,4 @@
-// Faults on demand: what may go wrong in an eye-bot and between it and its hub, at given times and from a seed.
+// Faults on demand in an eye-bot and between it and its hub, at given times and from a seed.
 #pragma once
 #include <string>
 #include <vector>

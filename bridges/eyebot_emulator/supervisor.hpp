@@ -1,4 +1,4 @@
-// The part of an eye-bot's firmware that decides whether it flies: modes, who controls, fail-safes.
+// The part of an eye-bot's firmware that decides whether it flies: modes, controlling hub, fail-safes.
 #pragma once
 #include <array>
 #include <optional>

@@ -67,7 +67,7 @@ struct VariableMap {
   std::size_t words = 1;      ///< a node whose variable has another size is not believed
   hal::TimeNs period_ns = 0;  ///< between reads; 0: every tick
   bool optional = false;      ///< the node is complete without it
-  bool verify = false;        ///< what is written is read back, and written anew when it is not there
+  bool verify = false;        ///< what is written is read back, and written again when it is not there
   std::vector<FieldMap> reads;
   std::vector<FieldMap> writes;  ///< together they cover every word, or there are none
   int line = 0;                  ///< in the map's file, for messages
@@ -108,7 +108,7 @@ struct NodeMap {
 
 struct FootbotMap {
   std::string profile;
-  hal::TimeNs refresh_ns = 500 * hal::kNsPerMs;  ///< writes are repeated this often: nobody acknowledges them
+  hal::TimeNs refresh_ns = 500 * hal::kNsPerMs;  ///< writes are repeated this often, without acknowledgements
   std::vector<NodeMap> nodes;
 };
 

@@ -1,4 +1,4 @@
-// Notices by what a module holds that it has lost its memory: it restarted. Modules do not tell.
+// Notices from a module's values that it has lost its memory: it restarted. Modules do not report that.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -7,7 +7,7 @@
 
 namespace tandem::bridges::footbot {
 
-/// Words that a module is told and that are read back: it held others, nobody told it zeros, and it holds zeros.
+/// Words that a module is told and that are read back: it held others, got no zeros, and holds zeros.
 class ToldWords {
  public:
   /// An answer may have been under way for so long when zeros were sent.
@@ -31,7 +31,7 @@ class ModuleCounter {
   static constexpr double kMostTimes = 3.0;    ///< as fast as before it may count
   static constexpr double kSilentTimes = 1.5;  ///< as long as between the two readings before: one has not come
 
-  /// @returns whether it began anew; once for each time.
+  /// @returns whether it started again; once for each time.
   bool began_anew(std::int32_t raw, hal::TimeNs taken_ns) noexcept;
 
  private:

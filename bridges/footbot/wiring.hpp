@@ -19,7 +19,7 @@ using aseba::NodeStatus;
 using aseba::RestMessage;
 
 struct WiringStatistics {
-  std::uint64_t counter_jumps = 0;  ///< counters that changed faster than can be, or began anew
+  std::uint64_t counter_jumps = 0;  ///< counters that changed faster than can be, or started again
   std::uint64_t restarts = 0;       ///< of nodes that the robot never drives without, as far as their words show it
   std::uint64_t not_obeyed = 0;     ///< written values that were not there when read back
   std::uint64_t packets_unfit = 0;  ///< range-and-bearing events of another length than the map says
@@ -41,7 +41,7 @@ class Wiring : public aseba::NodeWiring {
 
   /// Notes which ports were taken since the last call: they decide what is read and written.
   void note_demand() noexcept;
-  /// Looks who is there. True when something changed.
+  /// Looks for modules. True when something changed.
   bool look() noexcept;
   /// Looks whether nodes that the robot never drives without have lost their memory. @returns what happened, for
   /// people; "" when nothing did.
@@ -76,7 +76,7 @@ class Wiring : public aseba::NodeWiring {
   std::vector<NodeStatus> nodes() const;
   /// The names of the nodes that are there.
   void identify(bridges::RobotIdentity& identity) const;
-  /// Messages that have everything rest, for whoever must stop the robot when this process cannot. They are right as
+  /// Messages that have everything rest, to stop the robot when this process cannot. They are right as
   /// long as the nodes that are there now keep their descriptions.
   std::vector<RestMessage> rest_messages() const;
   const WiringStatistics& statistics() const noexcept { return statistics_; }

@@ -1,4 +1,4 @@
-// The robot's CAN bus of 1 Mbit/s: who may speak when.
+// The robot's CAN bus of 1 Mbit/s: arbitration and timing.
 #pragma once
 #include <deque>
 #include <optional>
@@ -27,7 +27,7 @@ class Bus {
   };
   /// The next frame that has passed by `now`.
   std::optional<Passed> next(hal::TimeNs now);
-  /// When `next` will have something, if nobody else speaks.
+  /// When `next` will have something, if no other node speaks.
   std::optional<hal::TimeNs> next_at() const;
 
  private:

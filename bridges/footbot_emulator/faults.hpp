@@ -1,4 +1,4 @@
-// Faults on demand: what may go wrong in a foot-bot and on its bus, at given times and from a seed.
+// Faults on demand in a foot-bot and on its bus, at given times and from a seed.
 #pragma once
 #include <array>
 #include <optional>

@@ -17,7 +17,7 @@ class FrameParser {
   void add(std::span<const std::byte> bytes);
   /// Fills `frame` with the next one, but for when it was received. False: it is not all there yet.
   bool next(Frame& frame);
-  /// The stream begins anew.
+  /// The stream starts again.
   void reset();
 
   /// Places where there was no frame, so far.

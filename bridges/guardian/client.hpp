@@ -9,7 +9,7 @@
 //
 // Hub and guardian watch one another, and each itself (bridges/guardian/pulse.hpp). After a freeze of either, or of
 // both at once, no link may be written to until the guardian has seen every robot confirm its stop, or a second after
-// the hub is back. Links that were open report that they hung up, so bridges open them anew and begin as after any
+// the hub is back. Links that were open report that they hung up, so bridges reopen them and begin as after any
 // outage: stopped, and driving only after the ordinary way back.
 #pragma once
 #include <atomic>
@@ -26,7 +26,7 @@
 namespace tandem::bridges::guardian {
 
 struct GuardianOptions {
-  /// Set by whoever catches SIGTSTP: the robots are stopped, and then this process. Null: Ctrl-Z is as any other
+  /// Set by the handler of SIGTSTP: the robots are stopped, and then this process. Null: Ctrl-Z is as any other
   /// freeze.
   std::atomic<bool>* suspend_asked = nullptr;
   PulseLimits limits = {};
@@ -62,13 +62,13 @@ class GuardianClient {
   /// still being stopped for a hub that is gone is taken over. Error: another hub drives one (names it), two have the
   /// same link, no `StopperType` suits, or the guardian is gone.
   hal::Status claim(std::span<const StopMessages> robots);
-  /// As `claim`: what became of each, in their order. Those that are refused keep nobody else from being watched.
+  /// As `claim`: what became of each, in their order. Refused ones keep no others from being watched.
   std::vector<hal::Status> claim_each(std::span<const StopMessages> robots);
   /// From now on this robot, which was claimed, is stopped in this way when the hub dies or freezes. Does nothing where
   /// that is what the guardian knows already.
   void watch(const StopMessages& robot);
   /// The robot rests, or was never driven: nothing to do for it. A later `watch` has it guarded again; its id and its
-  /// link may be claimed anew.
+  /// link may be claimed again.
   void release(const std::string& robot);
 
   /// For links and bridges. Refers to memory that is never freed.

@@ -14,7 +14,7 @@ struct PulseLimits {
 };
 
 /// One process' judgement of the other's heartbeat. Counts the silence since the last beat in the time in which the
-/// judge itself was awake: one that was not scheduled for a while saw nothing, and blames nobody for it.
+/// judge itself was awake: one that was not scheduled for a while saw nothing, and blames none for it.
 class Pulse {
  public:
   explicit Pulse(const PulseLimits& limits = {}) noexcept : limits_(limits) {}
@@ -35,7 +35,7 @@ class Pulse {
     if (silence_ns_ >= limits_.silent_ns) return true;
     return silence_ns_ >= limits_.stopped_ns && stopped();
   }
-  /// Begins anew, such as after a freeze.
+  /// Starts again, such as after a freeze.
   void forget() noexcept { *this = Pulse(limits_); }
 
  private:

@@ -5,7 +5,7 @@
 // become another robot's can be given up alone.
 //
 // The kernel frees a lock when its holder dies, whatever the file says: there are no stale locks. The file tells who
-// holds it, and how the robot is stopped, so that whoever takes over knows; a file that nobody holds, and that says
+// holds it, and how the robot is stopped, for its successor; a file that is not held, and that says
 // "driven", is what is left of a hub and a guardian that were killed together.
 #pragma once
 #include <cstdint>
@@ -43,15 +43,15 @@ std::string written_key(const StopMessages& robot);
 /// All locks of a robot by what is known now, `written_key` first. Asks for hosts' addresses, and so may take seconds.
 /// "localhost", 127.0.0.1 and ::1 are one device.
 std::vector<std::string> lock_keys(const StopMessages& robot);
-/// The lock of a robot that has an address of its own; "": it has none, or nobody knows it yet.
+/// The lock of a robot that has an address of its own; "": it has none, or none is known yet.
 std::string address_key(const StopMessages& robot);
-/// The lock of one robot in the care of one guardian alone: nobody else asks for it.
+/// The lock of one robot in the care of one guardian alone: others never ask for it.
 std::string left_key(const StopMessages& robot, pid_t guardian);
 
 /// A held lock. Movable.
 class RobotLock {
  public:
-  /// Nothing when somebody else holds it; `holder` is then what his file says, as far as it can be read. Else `holder`
+  /// Nothing when another holds it; `holder` is then what his file says, as far as it can be read. Else `holder`
   /// is what the last holder left behind when he was killed. Error: the file cannot be made.
   static hal::Result<std::optional<RobotLock>> take(const std::string& folder, const std::string& key,
                                                     std::optional<LockHolder>& holder);
@@ -73,11 +73,11 @@ class RobotLock {
 /// The locks of one robot.
 class RobotLocks {
  public:
-  /// Frees those that are not in `keys`, and takes those that are, as far as nobody else holds them. @returns whether
-  /// it has all; else `holder` is who has one of them. Error: a file cannot be made.
+  /// Frees those that are not in `keys`, and takes those that are, as far as they are free. @returns whether
+  /// it has all; else `holder` has one of them. Error: a file cannot be made.
   hal::Result<bool> change_to(const std::string& folder, const std::vector<std::string>& keys,
                               std::optional<LockHolder>& holder);
-  /// Takes one more, unless somebody else holds it: that is `holder` then. Error: as above.
+  /// Takes one more, unless another holds it: that is `holder` then. Error: as above.
   hal::Result<bool> add(const std::string& folder, const std::string& key, std::optional<LockHolder>& holder);
   void free(const std::vector<std::string>& keys);
   void free_all() { held_.clear(); }
@@ -95,12 +95,12 @@ struct AbandonedRobot {
   std::int64_t seen_unix_s = 0;  ///< when its file was last written: then they lived
 };
 
-/// Robots in this folder that were driven and that nobody holds; files that tell of none are removed.
+/// Robots in this folder that were driven and are not held; files that tell of none are removed.
 std::vector<AbandonedRobot> find_abandoned(const std::string& folder);
-/// Removes what those left behind that held this robot, as far as nobody holds it now.
+/// Removes what those left behind that held this robot, as far as it is free now.
 void forget_abandoned(const std::string& folder, const LockHolder& holder);
 
-/// Where a guardian listens for whoever wants to take over a robot from it.
+/// Address at which a guardian listens for programs that want to take over a robot from it.
 std::string takeover_socket(const std::string& folder, pid_t guardian);
 
 }  // namespace tandem::bridges::guardian

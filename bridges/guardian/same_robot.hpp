@@ -33,7 +33,7 @@ class RobotTrace {
   void tried(bool reached, hal::TimeNs now) noexcept;
 
   /// The device that its link led to when it was looked at last; nothing: none, or the link is no terminal. What was
-  /// heard over a link that leads elsewhere by now was said by somebody else.
+  /// heard over a link that leads elsewhere by now was said by another.
   const std::optional<std::string>& leads_to() const noexcept { return leads_to_; }
   /// Whether the robot that answers on its link is this one.
   bool proved() const;
@@ -43,7 +43,7 @@ class RobotTrace {
  private:
   StopMessages robot_;
   std::optional<std::string> leads_to_;
-  std::string node_;  // of the device, as it was; "": it has none, or nobody knows
+  std::string node_;  // of the device, as it was; "": it has none, or none is known
   bool broken_ = false, renamed_ = false;
   hal::TimeNs silent_since_ns_ = 0;  // 0: it is not
 };

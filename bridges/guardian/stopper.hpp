@@ -1,4 +1,4 @@
-// Interface of what stops one real robot of one kind once its hub is gone. Runs in the guardian process alone.
+// Interface of a stopper: stops one real robot of one kind once its hub is gone. Runs in the guardian process alone.
 #pragma once
 #include <memory>
 #include <string>
@@ -16,7 +16,7 @@ enum class StopState : std::uint8_t {
   Confirmed     ///< the robot itself says that it rests
 };
 
-/// Frozen: the hub may come back, the robot is to wait. Gone: nobody will command the robot any more.
+/// Frozen: the hub may come back, the robot is to wait. Gone: the robot will get no more commands.
 enum class StopCause : std::uint8_t { HubFrozen, HubGone };
 
 /// Stops one robot. Has a thread of its own in the guardian: nothing that it does delays another robot's stop.

@@ -40,7 +40,7 @@ class WatchedRobot {
 
   void watch(const StopMessages& robot);
   void release();
-  /// Begins to stop it, or begins anew. Nothing happens where it was released or never watched.
+  /// Begins to stop it, or starts again. Nothing happens where it was released or never watched.
   void stop(StopCause cause);
   /// Ends stopping: the link is closed soon.
   void hold();
@@ -53,9 +53,9 @@ class WatchedRobot {
   struct View {
     bool to_be_stopped = false;  ///< watched, not released, not let go
     bool idle = true;            ///< no stopper has a link open
-    bool given_up = false;       ///< released, or its claim was refused: nobody drives it
+    bool given_up = false;       ///< released, or its claim was refused: not driven
     bool confirmed = false;      ///< the stop that was begun last, by this very robot
-    bool line_lost = false;      ///< its link leads to somebody else now, as `trouble` says
+    bool line_lost = false;      ///< its link leads to another robot now, as `trouble` says
     std::string handed_over;     ///< to whom, for people; "": it is ours
     StopState state = StopState::Unreachable;
     std::string trouble;
@@ -86,9 +86,9 @@ class WatchedRobot {
   std::condition_variable wake_;
   StopMessages robot_;
   RobotLocks locks_;
-  RobotLocks left_;  // of our own: what we owe, whoever has the line
+  RobotLocks left_;  // of our own: what we owe, whichever process has the line
   std::vector<std::string> lent_keys_;
-  pid_t lent_to_ = 0;  // 0: nobody
+  pid_t lent_to_ = 0;  // 0: none
   hal::TimeNs lent_until_ns_ = 0;
   bool address_due_ = false;  // it was found out, and has no lock yet
   RobotTrace trace_;

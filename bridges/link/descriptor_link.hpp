@@ -1,4 +1,4 @@
-// What byte links on a descriptor have in common.
+// Common part of byte links on a descriptor.
 #pragma once
 #include <atomic>
 #include <sys/types.h>
@@ -7,7 +7,7 @@
 
 namespace tandem::bridges {
 
-/// A link whose descriptor does not block; who derives from it closes that.
+/// A link whose descriptor does not block; derived classes close it.
 class DescriptorLink : public ByteLink {
  public:
   std::size_t write(std::span<const std::uint8_t> bytes, hal::TimeNs budget_ns) noexcept final;

@@ -1,4 +1,4 @@
-// Byte links: what carries a robot's bytes, whatever it is made of.
+// Byte links: carriers of a robot's bytes of any make.
 //
 // One thread reads (`wait`, `read`) while another may write; nothing else is shared. No call blocks longer than it
 // says.
@@ -16,7 +16,7 @@
 namespace tandem::bridges {
 
 /// HungUp: the other side is gone (cable out, Bluetooth out of range). A serial link never recovers from it and must be
-/// opened anew; links that lose their peer for a while only (`FaultyLink`) become Open again by themselves.
+/// reopened; links that lose their peer for a while only (`FaultyLink`) become Open again by themselves.
 enum class LinkState : std::uint8_t { Open, HungUp };
 
 /// Counted since the link was made.
@@ -56,7 +56,7 @@ class ByteLink {
   virtual std::string name() const = 0;
 };
 
-/// Opens a link, or opens it anew after a hang-up. May block for seconds (Bluetooth): call it from a worker thread.
+/// Opens a link, or reopens it after a hang-up. May block for seconds (Bluetooth): call it from a worker thread.
 using LinkOpener = std::function<hal::Result<std::unique_ptr<ByteLink>>()>;
 
 /// Source of time of a link that does not touch the outside world; tests give a clock that they turn by hand.

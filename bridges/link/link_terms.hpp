@@ -1,4 +1,4 @@
-// The terms on which a link is opened: who may speak through it, and beside whom.
+// The terms on which a link is opened: the permitted speakers.
 #pragma once
 #include <functional>
 #include <memory>

@@ -7,7 +7,7 @@
 
 namespace tandem::bridges {
 
-/// Hung up from the moment when the permit was withdrawn, also where it has been granted anew since.
+/// Hung up from the moment when the permit was withdrawn, also where it has been granted again since.
 class PermittedLink final : public ByteLink {
  public:
   /// `turn`: of the permit, before `link` was opened.

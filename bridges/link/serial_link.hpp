@@ -16,7 +16,7 @@ class SerialLink final : public DescriptorLink {
   /// Blocks while the kernel does, for seconds on Bluetooth.
   /// Errors, each with what to do: no such device, no permission, busy, not a terminal, Bluetooth peer down, not
   /// configurable.
-  /// `beside`: whoever holds the port does not matter.
+  /// `beside`: another holder of the port does not matter.
   static hal::Result<std::unique_ptr<ByteLink>> open(const LinkAddress& address, bool beside = false);
   ~SerialLink() override;
 

@@ -37,7 +37,7 @@ class TcpLink final : public DescriptorLink {
   static hal::Result<std::unique_ptr<ByteLink>> connect(const Endpoint& endpoint, std::string_view scheme = "tcp",
                                                         std::string_view who_listens = "is its program running?",
                                                         hal::TimeNs timeout_ns = 3 * hal::kNsPerSecond);
-  /// A connection that somebody else made, as `Listener::accept` gives it; owned from here on. `name` is for messages.
+  /// A connection made elsewhere, as `Listener::accept` gives it; owned from here on. `name` is for messages.
   static std::unique_ptr<ByteLink> take_over(std::string name, int socket);
   ~TcpLink() override;
 

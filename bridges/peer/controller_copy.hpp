@@ -38,7 +38,7 @@ ControllerCopy controller_copy_from(const hal::Json& json);
 struct CopyComparison {
   std::string differs;       ///< what is not the same, here and there: the controllers are not the same
   std::string same;          ///< what is
-  std::string not_compared;  ///< what nobody can tell, and why
+  std::string not_compared;  ///< the unknown part, and why
 };
 
 /// `peers`: nothing: the peer does not tell. Files are compared by their digests; libraries for two different

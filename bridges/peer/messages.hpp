@@ -50,7 +50,7 @@ struct Hello {
   std::int64_t version = kVersion;
 };
 
-/// Of the hub: who the peer is.
+/// Of the hub: the peer's identity.
 struct RobotMessage {
   std::string session;
   std::string robot, kind, experiment;

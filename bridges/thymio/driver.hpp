@@ -1,7 +1,7 @@
 // One Thymio without threads (bridges/aseba/node_driver.hpp): its program, and the wiring of its ports.
 //
 // The program in the robot stops it when it heard nothing of the hub for the command time-out, whatever has become of
-// hub, guardian and link. Only when the program itself is gone, by somebody else's loading another, does the robot do
+// hub, guardian and link. Only when the program itself is gone, by the loading of another, does the robot do
 // as that one says.
 #pragma once
 #include "bridges/aseba/node_driver.hpp"

@@ -2,7 +2,7 @@
 // values both ways. The program is looked after as any of the hub's own (bridges/aseba/resident_program.hpp); it is
 // used once every sensor has measured since its start.
 //
-// A reset clears the variables, and a robot may be reset at any time, by a loose battery or somebody else's program:
+// A reset clears the variables, and a robot may be reset at any time, by a loose battery or a foreign program:
 // what sensors say is believed once the mailbox, read afterwards, shows that the program still runs.
 #pragma once
 #include <array>
@@ -83,7 +83,7 @@ class Wiring : public aseba::NodeWiring {
   const WiringStatistics& statistics() const noexcept { return statistics_; }
 
  private:
-  /// A sensor's words; none where the robot has none, or nobody reads them.
+  /// A sensor's words; none where the robot has none, or they are not read.
   struct Source {
     const hal::PortType* type = nullptr;
     std::string_view name;
@@ -128,7 +128,7 @@ class Wiring : public aseba::NodeWiring {
   void write_tone(bool drive, hal::TimeNs now) noexcept;
   template <std::size_t n>
   void write_block(Block<n>& block, const std::array<std::int16_t, n>& words, hal::TimeNs now) noexcept;
-  /// When the port's words were taken; 0: never, or nobody reads them.
+  /// When the port's words were taken; 0: never, or they are not read.
   template <class Port>
   hal::TimeNs taken_ns() const noexcept;
   template <class Port>

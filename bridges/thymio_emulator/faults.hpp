@@ -1,4 +1,4 @@
-// Faults on demand: what may go wrong in a Thymio and on its line, at given times and from a seed.
+// Faults on demand in a Thymio and on its line, at given times and from a seed.
 #pragma once
 #include <vector>
 

@@ -61,7 +61,7 @@ class Thymio {
 
   /// It is switched off and on: deaf for `boot_ns`, then every variable is 0, and there is no program.
   void restart(hal::TimeNs at, std::string_view why);
-  /// Somebody else loads another program, which does nothing.
+  /// A foreign program is loaded, which does nothing.
   void load_other_program(hal::TimeNs at);
   /// It hears nothing, or cannot be heard.
   void set_deaf(bool deaf) { deaf_ = deaf; }

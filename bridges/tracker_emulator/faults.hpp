@@ -1,4 +1,4 @@
-// Faults on demand: what may go wrong with a tracker, at given times and from a seed.
+// Faults on demand of a tracker, at given times and from a seed.
 #pragma once
 #include <cstdint>
 

@@ -18,7 +18,7 @@ class Sender {
 };
 
 bool sends_frames(const std::string& link) noexcept;
-/// "pipe:FILE", which is made where there is none, takes frames as tandem-frames while somebody reads it;
+/// "pipe:FILE", which is made where there is none, takes frames as tandem-frames while it is read;
 /// "folder:FOLDER" gets a PGM of each. The caller's process must ignore SIGPIPE. Errors: neither can be made.
 hal::Result<std::unique_ptr<Sender>> open_frame_sender(const std::string& link);
 

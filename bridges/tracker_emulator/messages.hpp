@@ -1,4 +1,4 @@
-// What a tracker sends, by docs/trackers.md.
+// Messages of a tracker, by docs/trackers.md.
 #pragma once
 #include <cstddef>
 #include <cstdint>

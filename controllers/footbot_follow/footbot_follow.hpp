@@ -1,4 +1,4 @@
-// Follows whoever calls by range-and-bearing, in the air or on the ground.
+// Follows a robot that calls by range-and-bearing, in the air or on the ground.
 #pragma once
 #include "hal/controller.hpp"
 #include "hal/device/leds.hpp"
@@ -10,7 +10,7 @@ namespace tandem::controllers {
 
 /// Drives towards the nearest robot that broadcasts that it is to be followed, until it is as near as asked for, seen
 /// from above; around what its proximity sensors see. Its beacon is green while it hears one. It stands still while it
-/// hears nobody, or is blind.
+/// hears no call, or is blind.
 class FootbotFollow final : public hal::Controller {
  public:
   struct Params {

@@ -7,7 +7,7 @@
 
 namespace tandem::controllers {
 
-/// Each robot counts through a period, flashes red with all its LEDs at the end, and begins anew. While it sees a red
+/// Each robot counts through a period, flashes red with all its LEDs at the end, and starts again. While it sees a red
 /// light it counts faster, the more so the farther its own count is: who is a little late jumps to the end and flashes
 /// with the others. Such oscillators fall into step [Mirollo and Strogatz 1990, "Synchronization of pulse-coupled
 /// biological oscillators", SIAM J. Appl. Math. 50(6)], on robots that see their neighbours alone as well [Christensen

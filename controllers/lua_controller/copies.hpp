@@ -1,4 +1,4 @@
-// Walks over what a robot's functions can reach: to keep it, to put it back, to measure it.
+// Walks over everything that a robot's functions can reach: to keep it, to put it back, to measure it.
 #pragma once
 #include <cstdint>
 #include <initializer_list>

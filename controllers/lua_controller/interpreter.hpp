@@ -93,7 +93,7 @@ class Interpreter {
   Interpreter(const Interpreter&) = delete;
   Interpreter& operator=(const Interpreter&) = delete;
 
-  /// Held by whoever calls anything below.
+  /// Held by callers of anything below.
   std::mutex& lock() noexcept { return lock_; }
 
   const std::vector<Device>& devices() const noexcept { return devices_; }

@@ -1,4 +1,4 @@
-// Counts what a call of a script does, exactly: the same call has the same count in every run, on any thread.
+// Counts the work of a call of a script exactly: the same call has the same count in every run, on any thread.
 //
 // Lua's virtual machine looks for a reason to stop wherever a loop goes on, a function is called or has returned, or a
 // slow instruction is done. That look is led here (limits.cpp), and is one step. Library functions whose time grows
@@ -12,7 +12,7 @@ namespace tandem::controllers::lua {
 struct Steps {
   enum class Over : std::uint8_t { No, Steps, Memory };
 
-  std::int64_t left = kUnlimited;     ///< until somebody looks what is up
+  std::int64_t left = kUnlimited;     ///< until the next look at the limits
   std::int64_t granted = kUnlimited;  ///< what `left` was
   std::int64_t spent = 0;             ///< before that was granted
   std::int64_t most = kUnlimited;

@@ -1,4 +1,4 @@
-// Tables that every robot has to itself, although what stands in them is there once.
+// Tables that every robot has to itself, although their contents are there once.
 //
 // A late copy is an empty table of the robot's own that shows what its original holds; the first thing that the script
 // writes into it makes it a copy in full. No script gets hold of an original. Readings are in tables that are filled

@@ -1,4 +1,4 @@
-// An eye-bot whose strings somebody else holds.
+// An eye-bot that others control.
 #pragma once
 #include "controllers/puppet/take_listed.hpp"
 #include "hal/controller.hpp"

@@ -1,4 +1,4 @@
-// A robot whose strings somebody else holds: an emulated firmware, a viewer, a test.
+// A robot that others control: an emulated firmware, a viewer, a test.
 #pragma once
 #include "controllers/puppet/take_listed.hpp"
 #include "hal/controller.hpp"

@@ -1,4 +1,4 @@
-// Reads experiment files: ARGoS 3's vocabulary, and what Tandem adds to it.
+// Reads experiment files: ARGoS 3's vocabulary, and Tandem's additions.
 #pragma once
 #include <optional>
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace tandem::core {
 
-/// An experiment file whose names nobody has judged yet: the plug-ins that it names come first.
+/// An experiment file whose names are not judged yet: the plug-ins that it names come first.
 struct ExperimentFile {
   Element root;
   Problems problems;  ///< so far

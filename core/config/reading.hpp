@@ -99,7 +99,7 @@ class Reading {
     return value;
   }
 
-  /// The same for an element whose further attributes are somebody else's.
+  /// The same for an element whose further attributes belong to others.
   template <class T>
   T read_open(Element& element, T value = {}) {
     check(element, T::kElement);

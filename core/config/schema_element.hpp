@@ -1,4 +1,4 @@
-// What a description of an element of experiment files begins with.
+// Beginnings of descriptions of elements of experiment files.
 #pragma once
 #include <string_view>
 

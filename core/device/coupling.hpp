@@ -1,4 +1,4 @@
-// Couplings: what ties devices to bodies once a tick, beyond what one device does for one block of robots.
+// Couplings: tie devices to bodies once a tick, beyond one device for one block of robots.
 #pragma once
 #include <memory>
 #include <string_view>

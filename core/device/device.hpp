@@ -46,7 +46,7 @@ class BlockColumns {
 };
 
 /// Fills the ports of one block; one object a block. Keeps nothing from tick to tick but in columns: it may be made
-/// anew at any time. Reads the space, never other robots' ports; writes no columns but rows of its own block.
+/// again at any time. Reads the space, never other robots' ports; writes no columns but rows of its own block.
 class Sensor {
  public:
   virtual ~Sensor() = default;

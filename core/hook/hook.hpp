@@ -1,4 +1,4 @@
-// Hooks: what the experiment itself does around the robots (ARGoS calls them loop functions).
+// Hooks: code of the experiment around the robots (ARGoS calls them loop functions).
 #pragma once
 #include <any>
 #include <memory>
@@ -30,7 +30,7 @@ class Checkpoints {
   /// Goes back: the next step is the one that followed the moment. Robots, objects, controllers, time and what hooks
   /// hand out in `Hook::save` are then as they were. Errors: there is no moment of that name.
   virtual hal::Status restore(const std::string& name) = 0;
-  /// Begins the run anew with this seed: World::reset. What hooks made is gone, checkpoints too. Of those of
+  /// Begins the run again with this seed: World::reset. What hooks made is gone, checkpoints too. Of those of
   /// `before_run`, which would never end, the run fails.
   virtual void reset(std::uint64_t seed) = 0;
 };
@@ -65,8 +65,8 @@ class Hook {
   /// Asked after every step; true ends the run.
   virtual bool is_done(HookContext&) { return false; }
   virtual void after_run(HookContext&) {}
-  /// The run begins anew, with another seed perhaps; `before_run` follows. True: the hook is at its start again, and
-  /// remembers what it wants to (the best run so far, say). False: it is destroyed and made anew.
+  /// The run starts again, with another seed perhaps; `before_run` follows. True: the hook is at its start again, and
+  /// remembers what it wants to (the best run so far, say). False: it is destroyed and made again.
   virtual bool reset(std::uint64_t /*seed*/) { return false; }
 
   /// Reflectance of the floor at (x, y) in W, 0 black to 1 white; none: the hook leaves what is there. Asked once a

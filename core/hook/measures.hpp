@@ -12,7 +12,7 @@ class Measures {
   void set(std::string_view name, double value) { of(name) = value; }
   /// Adds to a number that is 0 at first.
   void add(std::string_view name, double by = 1.0) { of(name) += by; }
-  /// 0 for one that nobody has set.
+  /// 0 for one that was never set.
   double get(std::string_view name) const noexcept {
     const auto found = values_.find(name);
     return found == values_.end() ? 0.0 : found->second;

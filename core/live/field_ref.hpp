@@ -25,7 +25,7 @@ struct FieldRef {
 /// Reads {"role", "port", "field", "index"}. Errors: missing or unknown members.
 hal::Result<FieldRef> read_field_ref(const hal::Json& json);
 
-/// Where that value lies in the robots of a group. Valid until the group changes: to be found anew for every tick.
+/// Where that value lies in the robots of a group. Valid until the group changes: to be found again for every tick.
 class FieldPlace {
  public:
   /// Errors: its controllers take no such port, or it has no such field or element; says what there is.

@@ -1,4 +1,4 @@
-// One live run: the door between those who watch a run and the thread that steps it.
+// One live run: the door between its viewers and the thread that steps it.
 //
 //   while (live.before_step()) {       carries out commands, waits while the run is paused or ahead of its speed
 //     world.step();

@@ -122,7 +122,7 @@ struct LiveRun::Impl {
     const std::lock_guard hold(lock);
     return stopped || (options.stop != nullptr && options.stop->load(std::memory_order_relaxed));
   }
-  /// Whoever looks back when the run ends leaves it as it is, not as it was.
+  /// A look back at the end of the run leaves it as it is, not as it was.
   void leave() {
     if (!timeline.known()) return;
     if (const hal::Status there = timeline.go_to(timeline.latest_tick()); !there.ok())

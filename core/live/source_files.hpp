@@ -1,4 +1,4 @@
-// Files that controllers run (core/run/scripts.hpp): read anew while the run goes on.
+// Files that controllers run (core/run/scripts.hpp): read again while the run goes on.
 #pragma once
 #include <vector>
 
@@ -10,12 +10,12 @@
 
 namespace tandem::core {
 
-/// Has the robots of a configuration begin anew with other files; their poses, and all else, stay:
+/// Has the robots of a configuration start again with other files; their poses, and all else, stay:
 ///
 ///   {"do": "reload", "controller": id, "files": {name: text, …}}
 ///
 /// Completes the files with those that they ask for besides. Robots that their controllers' errors had stopped go on.
-/// @returns {"robots": how many began anew, "stopped": how many could not}: these stand still. Errors: the command
+/// @returns {"robots": how many started again, "stopped": how many could not}: these stand still. Errors: the command
 /// makes no sense; the first robot could not begin: nothing has changed then.
 hal::Result<hal::Json> reload(World& world, hal::Json& command);
 

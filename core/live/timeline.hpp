@@ -1,4 +1,4 @@
-// The way that a simulated run has taken: checkpoints to go back to, and what was touched at which step.
+// The way that a simulated run has taken: checkpoints to go back to, and touches by step.
 //
 //   step      0 . . . . | . . . . | . . . . | . . 14          | checkpoints, dropped where memory is wanted
 //   touches             ^a        ^b  ^c

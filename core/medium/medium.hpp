@@ -14,7 +14,7 @@
 
 namespace tandem::core {
 
-/// Holds nothing from tick to tick: whoever publishes does so in every tick before anybody listens. So snapshots and
+/// Holds nothing from tick to tick: publishers publish in every tick before listeners listen. So snapshots and
 /// fingerprints need none of it.
 class Medium {
  public:
@@ -30,13 +30,13 @@ class Medium {
 template <class T>
 class RowMedium : public Medium {
  public:
-  /// Where the robots of a block publish, one row each, every row in every tick; null: nobody would listen.
+  /// Where the robots of a block publish, one row each, every row in every tick; null: there are no listeners.
   T* publish(const RobotBlock& block) noexcept { return silent() ? nullptr : &rows_[block.first_row - first_row_]; }
   /// What the robot in this row publishes in this tick.
   const T& of(std::size_t row) const noexcept {
     return row - first_row_ < rows_.size() ? rows_[row - first_row_] : silence_;
   }
-  /// Whether nobody publishes, or nobody listens.
+  /// Whether publishers or listeners are missing.
   bool silent() const noexcept { return rows_.empty(); }
 
   void fit(const SpaceStores& stores) override {

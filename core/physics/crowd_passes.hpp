@@ -16,7 +16,7 @@ class CrowdPasses {
  public:
   static constexpr double kDeep = 0.01;             ///< overlap, in parts of the narrower one's diameter
   static constexpr double kShallow = 0.25 * kDeep;  ///< deeper ones, and those near them, go on
-  static constexpr double kSlack_m = 0.02;          ///< moves together after which neighbours are looked for anew
+  static constexpr double kSlack_m = 0.02;          ///< moves together after which neighbours are looked for again
   static constexpr int kMostPasses = 400;           ///< of pushing
   static constexpr std::uint8_t kHalvings = 5;      ///< of a way back; the last one is all of it
 
@@ -32,7 +32,7 @@ class CrowdPasses {
     return depth_m / (2.0 * std::min(radius_m, other_radius_m));
   }
 
-  /// Passes until nobody is deeper than `kDeep` in another, or nobody can go back further.
+  /// Passes until no body is deeper than `kDeep` in another, or none can go back further.
   ///   find(back)          finds the neighbours of all, within `kSlack_m`; with `back` also those on the way to where
   ///                       all were before the tick; returns the numbers of those that have any and give way
   ///   push(list)          computes what each of these is pushed by, and notes the overlaps found by `note`
@@ -93,8 +93,8 @@ class CrowdPasses {
     }
   }
 
-  /// Whoever is deep in another goes back, half its way each time and at last all of it, then those that it meets
-  /// there, and so on. Nobody was deep before the tick.
+  /// A body deep in another goes back, half its way each time and at last all of it, then those that it meets
+  /// there, and so on. No body was deep before the tick.
   template <class Push, class GoBack>
   double send_back(std::size_t bodies, const std::vector<std::uint32_t>& all, Push& push, GoBack& go_back) {
     marks_.assign(bodies, 0);  // how often they went back

@@ -47,8 +47,8 @@ class Solver {
 
   PhysicsAccuracy accuracy;      ///< since it was made
   double overlap = 0.0;          ///< of two robots that drive, after the last tick; its engine parts what is too deep
-  bool crowds_moved = false;     ///< since then, by its engine; whoever loads resets it
-  std::vector<Trouble> trouble;  ///< of the last tick; emptied by whoever collects it
+  bool crowds_moved = false;     ///< since then, by its engine; loading resets it
+  std::vector<Trouble> trouble;  ///< of the last tick; emptied by its collector
 };
 
 /// For EngineType::unfit: what is thinner than `thinnest_m` in any of its `sizes_m`, or lighter or heavier than numbers

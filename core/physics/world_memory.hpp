@@ -60,7 +60,7 @@ class WorldMemory {
  private:
   static constexpr std::size_t kClasses = 72;  // of sizes up to kLargestShared
 
-  /// Of the C library, not by `new`: what a library's solver takes is nobody else's doing.
+  /// Of the C library, not by `new`: what a library's solver takes is its own doing.
   struct Free {
     void operator()(std::byte* bytes) const noexcept { std::free(bytes); }
   };

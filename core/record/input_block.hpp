@@ -1,7 +1,7 @@
 // Inputs of a run as blocks of a record: in every tick all rows that reached the space from outside, as differences to
 // the tick before.
 //
-// The payload: u8, 1 where it stands for itself (every so many ticks, and when who is there changes), 0 where it is the
+// The payload: u8, 1 where it stands for itself (every so many ticks, and when members change), 0 where it is the
 // difference to the block before, which is that of the tick before. Then, for each table (all; those that changed),
 // numbers of LEB128: stream, members, bytes of the rows as in a block of Rows, bytes of the code; and the code: pairs
 // of numbers, so many bytes are as they were, so many are different, and these, exclusive-or what was there. What a

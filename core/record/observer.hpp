@@ -1,4 +1,4 @@
-// Observers: what looks at a world after every tick and writes down what it makes of it.
+// Observers: look at a world after every tick and write their results down.
 #pragma once
 #include <exception>
 #include <memory>

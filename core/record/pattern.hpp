@@ -1,4 +1,4 @@
-// Patterns of ids, and what they choose of a space.
+// Patterns of ids, and their choice from a space.
 #pragma once
 #include <string_view>
 

@@ -67,7 +67,7 @@ enum class RecordBlock : std::uint16_t {
 };
 
 /// Writes a record while a run goes on. The thread that steps copies; one of the recorder's own encodes and writes, and
-/// is waited for before the next rows are copied: of the ticks that are done, who is killed loses the last at most.
+/// is waited for before the next rows are copied: of the ticks that are done, a killed run loses the last at most.
 class Recorder {
  public:
   /// Opens the file and writes `start`, and what there is before the first tick. Errors: the file cannot be written; a
@@ -79,7 +79,7 @@ class Recorder {
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  /// Rows that somebody else keeps are written as well. Before the first tick.
+  /// Rows kept elsewhere are written as well. Before the first tick.
   hal::Status add(const RecordTable& table);
   /// Real robots take part: from now on everything that reaches the space from outside is written in every tick, and
   /// what there is of it before the first one now. `inputs` must outlive this. Error: as `tick_done`.

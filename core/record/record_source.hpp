@@ -1,4 +1,4 @@
-// A record as the space of its run: who shows, draws, lists or measures a space does the same with a record.
+// A record as the space of its run: displays, lists and measures work on it as on a world's.
 #pragma once
 #include <cstdint>
 #include <memory>

@@ -25,7 +25,7 @@ enum class RowOrder : std::uint8_t {
   Ids      ///< as the file and then hooks brought them
 };
 
-/// Rows about robots that somebody else keeps, and brings up to date between ticks.
+/// Rows about robots that are kept elsewhere, and brought up to date between ticks.
 struct RecordTable {
   const hal::RowType* type = nullptr;
   std::string_view set;
@@ -33,7 +33,7 @@ struct RecordTable {
   const void* first = nullptr;  ///< rows one after the other, of these robots; outlives the record
 };
 
-/// Streams of rows, and who is in each. `encode` may run on another thread than the others, not at the same time.
+/// Streams of rows, and the members of each. `encode` may run on another thread than the others, not at the same time.
 class RecordStreams {
  public:
   explicit RecordStreams(RecordConfig config, RowOrder order = RowOrder::Memory)
@@ -46,7 +46,7 @@ class RecordStreams {
     tables_.push_back(std::move(table));
     generations_ = ~std::uint32_t{0};  // stale
   }
-  /// Finds all anew and appends the blocks that declare what no block has declared before.
+  /// Finds all again and appends the blocks that declare what no block has declared before.
   void declare(const Space& space, hal::Tick now, std::string& out);
   /// What reaches the space from outside is written in every tick from now on; it must outlive this. `declare` is to
   /// follow.

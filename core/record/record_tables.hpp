@@ -1,4 +1,4 @@
-// The tables of a record, as whoever takes tables gets them.
+// The tables of a record, for export.
 #pragma once
 #include <cstdint>
 #include <memory>

@@ -15,7 +15,7 @@
 
 namespace tandem::core {
 
-/// Whole lines that were recorded and not yet written, for who must end the process from a signal handler: at `data`,
+/// Whole lines that were recorded and not yet written, to end the process from a signal handler: at `data`,
 /// `size` bytes of them, to be appended to `descriptor`. 0 bytes while a record is made.
 struct UnwrittenRecords {
   std::atomic<const char*> data{nullptr};

@@ -1,4 +1,4 @@
-// Roll call of real robots: who may move, who waits for a person, who cannot be reached; in groups, for people.
+// Roll call of real robots: those that may move, wait for a person, are not reached; in groups, for people.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -9,8 +9,8 @@ namespace tandem::core {
 
 /// In the order in which people are told.
 enum class Presence : std::uint8_t {
-  MayMove,         ///< it cannot be reached, and nobody knows that it rests
-  WaitsForPerson,  ///< it stands until somebody arms it
+  MayMove,         ///< it cannot be reached, and is not known to rest
+  WaitsForPerson,  ///< it stands until it is armed
   Unreachable,     ///< it cannot be reached, and was at rest before
   Stops,           ///< it was told to stand, and does not yet
   Drives,

@@ -70,7 +70,7 @@ class RunPart {
   virtual bool before_tick(Run& /*run*/) { return true; }
   /// After every tick. False: this tick was done before, and is nothing new for the parts whose turn is later.
   virtual bool after_tick(Run& /*run*/) { return true; }
-  /// What somebody did to the run after `tick` ticks, as records keep it ({"kind": …}).
+  /// An action of a person on the run after `tick` ticks, as records keep it ({"kind": …}).
   virtual void event(hal::Tick /*tick*/, const hal::Json& /*event*/) {}
   /// After the last tick and before the hooks' after_run; also where another part could not join. What it drives is to
   /// stand still when this returns.
@@ -99,7 +99,7 @@ class Run {
   bool running() const { return stepped_->running(); }
   const std::atomic<bool>& stop() const noexcept { return stop_; }
   bool stopped() const noexcept { return stop_.load(std::memory_order_relaxed); }
-  /// Before it begins; null is nobody.
+  /// Before it begins; may be null.
   void add(std::unique_ptr<RunPart> part);
 
   /// All of it: begins, ticks until a part ends it, ends. @returns whether it went: false, where a part could not join,

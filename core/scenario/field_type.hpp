@@ -1,4 +1,4 @@
-// A kind of field: an element of <arena>, and what it is in a world.
+// A kind of field: an element of <arena>, and its object in a world.
 #pragma once
 #include <memory>
 #include <string_view>

@@ -1,4 +1,4 @@
-// A kind of medium: an element of <media>, and what carries its signals in a world.
+// A kind of medium: an element of <media>, and the carrier of its signals in a world.
 #pragma once
 #include <memory>
 #include <string_view>

@@ -1,4 +1,4 @@
-// A kind of observer: an element of <record>, and what it makes of a run.
+// A kind of observer: an element of <record>, and its object in a run.
 #pragma once
 #include <memory>
 #include <string_view>

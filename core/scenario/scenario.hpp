@@ -93,7 +93,7 @@ struct BridgeConfig {
   Element options;
   int line = 0;
   std::shared_ptr<const void> own = {};  ///< the attributes of its kind, as its bridge reads them; null: left out
-  std::string rearm = "proved";          ///< who lets it go after a stop: proved, operator, after a time, never
+  std::string rearm = "proved";          ///< release after a stop: proved, operator, after a time, never
   double settle_s = 0.3;                 ///< then all must have been well for so long
   double ramp_m_s2 = 0.25;               ///< then its largest speed grows from 0 by this
   IfMissing if_missing = IfMissing::Refuse;
@@ -172,9 +172,9 @@ struct SpareItem {
   int line = 0;
 };
 
-/// Who commands the real robots of a run besides its own terminal and window, and how it begins.
+/// Desks: commanders of real robots besides the run's own terminal and window, and how the run begins.
 struct DeskConfig {
-  std::string lcm;                      ///< URL; empty: nobody commands over LCM
+  std::string lcm;                      ///< URL; empty: no commands over LCM
   std::string channel = "tandem/desk";  ///< of commands; answers go to this and "/reply"
   bool hold = false;                    ///< the run waits to be started
   std::vector<SpareItem> spares;
@@ -304,7 +304,7 @@ struct RecordConfig {
   std::vector<std::string> ports;             ///< names of ports; "*": all
   bool state = true;                          ///< what controllers publish
   std::int64_t fingerprint_every = 1000;      ///< ticks; 0: none
-  bool look = true;                           ///< LEDs, turrets, grippers, who is halted, floor and hooks' drawings
+  bool look = true;                           ///< LEDs, turrets, grippers, halts, floor and hooks' drawings
   bool inputs = true;                         ///< of real robots, in every tick
   bool objects = true;                        ///< poses of movable ones
   bool attitudes = true;                      ///< of robots in space

@@ -61,9 +61,9 @@ class RobotFactory {
   void make(const std::vector<RobotRequest>& requests, Problems& problems);
 
   /// Before the stores are emptied for a reset: ends the controllers of robots that came later, and remembers what
-  /// `make` made, so that the next `make` fills it anew: groups, blocks, ports, and controllers that can be reset.
+  /// `make` made, so that the next `make` fills it again: groups, blocks, ports, and controllers that can be reset.
   /// `changed`: the scenario is another than that `make` had, in what World::reset takes over; controllers are
-  /// constructed anew.
+  /// constructed again.
   void begin_anew(std::uint64_t seed, bool changed);
 
   /// What is wrong with the parameters of controllers in another scenario of the same robots.
@@ -71,7 +71,7 @@ class RobotFactory {
 
   /// Adds one robot, in the first free row of its group or a new one. `accepts(row)` is asked once the body stands in
   /// its row, before its controller is made. Errors: what is wrong with the parameters; what `accepts` says; a
-  /// controller that throws. Nobody can tell then that it was tried.
+  /// controller that throws. Nothing then shows that it was tried.
   hal::Result<RobotId> add(const RobotItem& item, const Pose& pose,
                            const std::function<hal::Status(std::size_t row)>& accepts);
 
@@ -135,7 +135,7 @@ class RobotFactory {
   std::vector<RobotBlock> start_blocks_;
   std::vector<std::pair<ColumnArrays*, std::vector<std::byte*>>> start_columns_;
   std::size_t start_robots_ = 0;
-  std::vector<RobotBlock> kept_;                            // start_blocks_ with their controllers, to be filled anew
+  std::vector<RobotBlock> kept_;                            // start_blocks_ with their controllers, to be filled again
   std::size_t filled_ = 0;                                  // how many of them are
   bool new_settings_ = false;                               // controllers are not to be reset
   std::vector<std::shared_ptr<const void>> former_params_;  // controllers may know theirs

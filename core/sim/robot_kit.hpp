@@ -1,4 +1,4 @@
-// What robots have in common that share a block.
+// Common data of the robots of a block.
 #pragma once
 #include <optional>
 

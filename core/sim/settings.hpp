@@ -23,7 +23,7 @@ bool same_settings(const Element& a, const Element& b);
 /// stay in their slots, and so with their configurations.
 std::vector<std::string> fixed_differences(const Scenario& before, const Scenario& changed, bool in_slots = false);
 
-/// The path of the seed among them: only a world that is made anew can have another.
+/// The path of the seed among them: only a world that is made again can have another.
 inline constexpr std::string_view kSeedPath = "framework.experiment.random_seed";
 
 /// The errors among them, each with its line, in one text.

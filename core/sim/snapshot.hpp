@@ -75,7 +75,7 @@ class SpaceCopy {
 /// Copies a controller. Says what it threw, or nothing.
 std::string copied(const hal::ControllerType& type, void* where, const void* from);
 
-/// The stores have another state than before: whoever keeps something of them looks anew.
+/// The stores have another state than before: keepers of parts of them look again.
 void note_other_state(SpaceStores& stores);
 
 }  // namespace tandem::core

@@ -95,13 +95,13 @@ class World {
   /// what else differs, and what both have changed.
   hal::Status load(std::string_view saved, const Scenario* before = nullptr);
 
-  /// Begins the run anew, from the first tick, as a new world of this seed would, to the last bit; plug-ins, threads
-  /// and the memory of robots stay. Controllers and hooks are reset or made anew, as they want (Controller::reset,
+  /// Begins the run again, from the first tick, as a new world of this seed would, to the last bit; plug-ins, threads
+  /// and the memory of robots stay. Controllers and hooks are reset or made again, as they want (Controller::reset,
   /// Hook::reset); which controller object drives which robot of its group may change with the seed. Snapshots from
   /// before are void. Calls `start`. Call between steps, or ask for it through HookContext::checkpoints. Errors: real
   /// robots take part; the places of this seed cannot be had; what is thrown: the run has failed then.
   ///
-  /// With `changed` it is the run of those settings, and all controllers and hooks are made anew. Errors: `can_reset`,
+  /// With `changed` it is the run of those settings, and all controllers and hooks are made again. Errors: `can_reset`,
   /// then nothing has changed.
   hal::Status reset(std::uint64_t seed, const Scenario* changed = nullptr);
   /// Whether it can. Errors, with lines: what is wrong with parameters; what differs and needs another world.
@@ -111,7 +111,7 @@ class World {
   /// step on. Bodies, mechanisms, chance and time stay, and so does all that nothing says otherwise of. Robots that
   /// have another configuration or other parameters get a new controller and safe commands, like robots that are added;
   /// devices that are listed with other options, and fitted parameters, count at once; a hook with other options is
-  /// made anew, called (`before_run`), and gets back what it gave to `Hook::save`; lights, objects and floors that the
+  /// made again, called (`before_run`), and gets back what it gave to `Hook::save`; lights, objects and floors that the
   /// run has not changed are as they say. Snapshots from before are void, and there is no reset. Call between steps.
   /// Errors: `can_continue_with`, then nothing has changed; what cannot be made in this world, and what the run has
   /// changed, too: the run has failed then.

@@ -86,7 +86,7 @@ struct SavedWorld {
   std::string engines;   ///< what they hold beyond the stores
   std::vector<std::any> hooks;
   std::vector<std::vector<ControlValue>> hook_controls;  ///< by hook
-  std::optional<KeptCheckpoints> checkpoints;            ///< of hooks, for who goes back without their knowing
+  std::optional<KeptCheckpoints> checkpoints;            ///< of hooks, for going back without their knowing
 };
 
 /// What an experiment puts into the arena and a run may change.

@@ -41,7 +41,7 @@ class BodyIndex {
     bool there = false;
   };
 
-  /// Sorts anew. `spot(row)` says where each row's body is, and is called once for each; `living` of them are there.
+  /// Sorts again. `spot(row)` says where each row's body is, and is called once for each; `living` of them are there.
   /// `fill(row)` gives the entry of one that is.
   template <class SpotOf, class Fill>
   void rebuild(std::size_t rows, std::size_t living, ThreadPool& pool, SpotOf&& spot, Fill&& fill);
@@ -148,7 +148,7 @@ class BodyIndex {
   LargeVector<std::uint32_t> cell_of_row_;
   std::vector<std::uint32_t> counted_;  // bodies in each part's cells; then: in those before
   std::size_t living_ = 0;
-  LargeVector<IndexEntry> entries_;  // sorted; the last kReadAhead are nobody's
+  LargeVector<IndexEntry> entries_;  // sorted; the last kReadAhead are unused
 };
 
 template <class SpotOf, class Fill>

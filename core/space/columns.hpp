@@ -20,7 +20,7 @@ struct ColumnArrays {
   std::byte* array(std::size_t block) const noexcept { return block < of_block.size() ? of_block[block] : nullptr; }
 };
 
-/// A column by its class, as who works with it keeps it; valid as long as the space.
+/// A column by its class, as its users keep it; valid as long as the space.
 template <class T>
 class Column {
  public:

@@ -1,4 +1,4 @@
-// Owners of halts: who keeps a robot from doing what its controller says.
+// Owners of halts: holders that keep a robot from obeying its controller.
 #pragma once
 #include <cstdint>
 
@@ -11,7 +11,7 @@ enum class HaltOwner : std::uint8_t {
   Controller = 2,  ///< its controller threw
   Safety = 4,      ///< the safety table of a real robot
   Operator = 8,    ///< a person, through a view or a console
-  Removed = 16     ///< nobody: the robot is gone, and its slot is empty
+  Removed = 16     ///< none: the robot is gone, and its slot is empty
 };
 
 /// Beside the owners' bits: the controller threw in this tick, which is not reported yet.

@@ -12,7 +12,7 @@ namespace tandem::core {
 /// sliding ones are how far b's point lies from a's, along the axis.
 struct JointForm {
   JointKind kind = JointKind::Fixed;
-  /// Sliding: unit vector along which b slides. In W for whoever makes a joint, in a's frame in the stores. Engines of
+  /// Sliding: unit vector along which b slides. In W for makers of joints, in a's frame in the stores. Engines of
   /// the plane take what of it lies in the plane; what slides upwards is fixed there.
   std::array<double, 3> axis{};
   bool limited = false;

@@ -102,7 +102,7 @@ class Space {
   /// configuration; bad parameters; a place that is occupied, outside the arena, or in no engine's region; a
   /// controller that throws. Nothing has changed then.
   hal::Result<RobotId> add_robot(const NewRobot& wanted);
-  /// Takes a robot out of the space: its controller is destroyed, its joints are released, nobody sees it any more.
+  /// Takes a robot out of the space: its controller is destroyed, its joints are released, no sensor sees it any more.
   /// Its id is not used again.
   void remove_robot(RobotId robot) noexcept;
   Pose pose(RobotId robot) const noexcept;  ///< gone: the origin
@@ -126,7 +126,7 @@ class Space {
   bool halted(RobotId robot) const noexcept;
   /// Whether `owner` does. Gone: only Removed does.
   bool halted_by(RobotId robot, HaltOwner owner) const noexcept;
-  /// Holds the robot in the name of `owner`, or lets go of it: it goes on when nobody else holds it.
+  /// Holds the robot in the name of `owner`, or lets go of it: it goes on when no other owner holds it.
   void set_halted(RobotId robot, bool halted, HaltOwner owner = HaltOwner::Hook) noexcept;
   /// Whether the robot's pose is set from outside (a real robot's twin): engines do not move it, others bump into it.
   bool external(RobotId robot) const noexcept;
@@ -221,11 +221,11 @@ class Space {
   double arena_center_y_m() const noexcept;
   /// Reflectance of the floor at (x, y), 0 black to 1 white.
   double floor(double x_m, double y_m) const noexcept;
-  /// Has the floor asked for anew from the hooks that paint it, before the next step.
+  /// Has the floor asked for again from the hooks that paint it, before the next step.
   void repaint_floor() noexcept;
   /// Value of a field at a point of W: of light, as if one faced every lamp. Error: there is none of that name.
   hal::Result<double> field(std::string_view name, double x_m, double y_m, double z_m = 0.0) const;
-  /// Has it asked for anew, if hooks paint it. Error: as above.
+  /// Has it asked for again, if hooks paint it. Error: as above.
   hal::Status repaint(std::string_view field);
 
   /// What hooks draw into pictures and views.

@@ -1,4 +1,4 @@
-// What reached a space from outside in a tick: rows of plain data by robot, for whoever writes them down.
+// What reached a space from outside in a tick: rows of plain data by robot, for writing them down.
 #pragma once
 #include <cstdint>
 #include <string_view>

@@ -120,7 +120,7 @@ enum BodyFlag : std::uint8_t {
   kExternal = 2,   ///< pose set from outside: engines leave it, others bump into it
   kEscaped = 4,    ///< left the arena in this tick
   kNotFinite = 8,  ///< its controller commanded something that is no finite number, in this tick
-  kMoved = 16      ///< put somewhere else between steps: its region is to be found anew
+  kMoved = 16      ///< put somewhere else between steps: its region is to be found again
 };
 
 /// A robot's place in a block.

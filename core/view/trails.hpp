@@ -24,7 +24,7 @@ class Trails {
 
   /// Whether `note` wants the places after so many ticks.
   bool wants(std::int64_t ticks_done) const noexcept;
-  /// In the order of the ticks; an earlier one than before: the run began anew, and so do the trails.
+  /// In the order of the ticks; an earlier one than before: the run started again, and so do the trails.
   void note(std::int64_t ticks_done, std::vector<Place> places);
   void note(std::int64_t ticks_done, const Space& space);
   /// Of a robot, for `Place::who`.

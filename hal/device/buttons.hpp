@@ -23,7 +23,7 @@ struct Buttons : Reading {
   }
 };
 
-/// Buttons. Nobody presses those of a simulated robot.
+/// Buttons. Those of a simulated robot are never pressed.
 struct ButtonsPart {
   static constexpr std::string_view kName = "buttons";
   static constexpr std::string_view kDoc = "Buttons.";

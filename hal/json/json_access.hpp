@@ -1,4 +1,4 @@
-// Reads JSON that somebody else may have written: what is missing, or of another kind, is `otherwise`.
+// Reads foreign JSON: a value that is missing, or of another kind, is `otherwise`.
 #pragma once
 #include <cstdint>
 #include <string>

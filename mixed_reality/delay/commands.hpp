@@ -1,4 +1,4 @@
-// Wheel commands as they were given, with their times: what a robot drives by so much later.
+// Wheel commands as given, with their times: the input of a robot that obeys late.
 #pragma once
 #include <algorithm>
 #include <array>

@@ -1,11 +1,11 @@
-// Delays between the hub and a real robot: their definitions, and what can be told of them.
+// Delays between the hub and a real robot: their definitions, and their identification.
 //
 //   command given ----link in----> robot has it ----command----> motors turn ----body----> the floor
 //    (stamp: sent)                                                   |
 //    reading  <----link out---- robot answers  <----counters---------+         tracker: sees the floor, and stamps that
 //    (stamp: the middle between question and answer)
 //
-// What stamps and measured places tell are three sums, whoever is late:
+// What stamps and measured places tell are three sums, wherever the delay is:
 //
 //   to way       link in + command + body        places by a tracker whose stamps are right, against commands
 //   to counters  link / 2 + command + counters   encoders against commands; link is both ways together

@@ -1,4 +1,4 @@
-// Rules for several people who command the same real robots: what counts, who is told.
+// Rules for several people who command the same real robots: precedence and notices.
 //
 //   an emergency stop        at once, whoever says it; nobody else arms a robot within a second of it, and nobody by
 //                            what was said before it
@@ -26,7 +26,7 @@ struct DeskWord {
 struct DeskStatus {
   std::optional<DeskWord> last;               ///< that was carried out
   std::optional<DeskWord> stop;               ///< the last emergency stop
-  std::map<std::string, std::uint64_t> said;  ///< commands, by who said them; of the first few
+  std::map<std::string, std::uint64_t> said;  ///< commands, by author; of the first few
   std::uint64_t turned_back = 0;              ///< words that took back another one's
   std::uint64_t refused = 0;                  ///< arming that came too close to an emergency stop
 };
@@ -38,10 +38,10 @@ class Desk {
   static constexpr hal::TimeNs kTurnsBack_ns = 2 * hal::kNsPerSecond;
   static constexpr std::size_t kMostNames = 32;
 
-  /// Asked when a word is to be carried out. @returns what whoever says it is to be told besides; mostly nothing.
+  /// Asked when a word is to be carried out. @returns a notice for its author; mostly empty.
   /// Error: it is not carried out.
   hal::Result<std::string> admit(const DeskWord& word, hal::TimeNs now_ns);
-  /// An emergency stop, which needs nobody's leave.
+  /// An emergency stop, which needs no leave.
   void note_stop(const DeskWord& word);
   DeskStatus status() const;
 

@@ -1,4 +1,4 @@
-// One reading of two: what the real robot measured, and what its twin would have among the simulated robots.
+// One reading of two: the real robot's, and its twin's among the simulated robots.
 #pragma once
 #include <cstddef>
 #include <functional>

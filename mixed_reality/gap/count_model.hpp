@@ -1,4 +1,4 @@
-// How a robot's counters follow from its wheel commands: the likelihood of what its encoders said.
+// How a robot's counters follow from its wheel commands: the likelihood of its encoders' readings.
 #pragma once
 #include <vector>
 

@@ -12,11 +12,11 @@
 namespace tandem::mixed_reality {
 
 struct RobotTick {
-  bool posed = false;    ///< the next three were recorded
-  bool told = false;     ///< so were the commands
-  bool sent = false;     ///< … as they were sent to a real robot, whoever gave them
-  bool counted = false;  ///< so was what the encoders say
-  bool held = false;     ///< somebody else held the robot: its command may not have reached it
+  bool posed = false;                                  ///< the next three were recorded
+  bool told = false;                                   ///< so were the commands
+  bool sent = false;                                   ///< … as they were sent to a real robot, by any author
+  bool counted = false;                                ///< so was what the encoders say
+  bool held = false;                                   ///< another held the robot: its command may not have reached it
   double x_m = 0.0, y_m = 0.0, heading_rad = 0.0;      ///< in W, at the tick
   double told_left_m_s = 0.0, told_right_m_s = 0.0;    ///< from this tick on
   double counted_left_m = 0.0, counted_right_m = 0.0;  ///< as they were at `counted_ns`
@@ -72,7 +72,7 @@ struct RecordedRun {
 };
 
 /// Reads a record whole. Of real robots the pose is the one that was latched, of others the one after the tick.
-/// Errors: no record; nobody's poses in it.
+/// Errors: no record; no poses in it.
 hal::Result<RecordedRun> read_recorded_run(const std::string& path);
 
 }  // namespace tandem::mixed_reality

@@ -1,4 +1,4 @@
-// How places follow from wheel commands: the likelihood of what trackers saw of one robot.
+// How places follow from wheel commands: the likelihood of the sightings of one robot.
 #pragma once
 #include <vector>
 
@@ -43,7 +43,7 @@ class WayModel {
   static Likelihood::Setup setup();
   /// Innovations of all places. Parameters of noise are logarithms (m after 1 m; s; s; m; rad).
   void run(const Params& v, Likelihood::Innovations& out) const;
-  /// Those that have nothing to do with the one before: the filter begins anew there. @returns whether there were new
+  /// Those that have nothing to do with the one before: the filter starts again there. @returns whether there were new
   /// ones.
   bool leave_out(const Likelihood::Innovations& innovations);
   std::size_t left_out() const noexcept;

@@ -13,7 +13,7 @@ struct WheelSeries {
   struct Command {
     double at_s = 0.0;  ///< from here on, until the next
     double left_m_s = 0.0, right_m_s = 0.0;
-    bool known = true;  ///< false: nobody knows what the robot was told
+    bool known = true;  ///< false: the commands are unknown
   };
   struct Place {
     double at_s = 0.0;

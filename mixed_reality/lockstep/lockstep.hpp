@@ -29,21 +29,21 @@ struct LockstepOptions {
   /// Makes the partner behind `<peer link="emulated:…">`; empty: there are none here.
   std::function<hal::Result<std::unique_ptr<Partner>>(core::World&, core::RobotId, const std::string& what)>
       make_emulated = {};
-  /// The hub's copy of a robot's controller, to compare the peer's with; empty: nobody compares.
+  /// The hub's copy of a robot's controller, to compare the peer's with; empty: no comparison.
   std::function<std::optional<bridges::peer::ControllerCopy>(core::World&, core::RobotId)> copy_of = {};
 };
 
 struct LockstepReport {
   std::vector<PartnerReport> peers;  ///< in the order of the experiment file
   std::uint64_t strangers = 0;       ///< connections that were refused, or were no peers
-  std::uint64_t waits = 0;           ///< times that somebody was waited for for a second and more
+  std::uint64_t waits = 0;           ///< waits for a peer of a second and more
   hal::TimeNs waited_ns = 0;         ///< of wall time, for answers
 };
 
 /// All calls come from the thread that steps. The world must outlive this.
 class LockstepRun final : public core::ExternalRobots {
  public:
-  static constexpr hal::TimeNs kNameAfter_ns = 800 * hal::kNsPerMs;  ///< who is missing is named then
+  static constexpr hal::TimeNs kNameAfter_ns = 800 * hal::kNsPerMs;  ///< missing peers are named then
   static constexpr hal::TimeNs kNameAgain_ns = 10 * hal::kNsPerSecond;
 
   /// Listens, and takes the robots with a `<peer>` over. Errors: a link that there is not, a port that is taken.
@@ -76,7 +76,7 @@ class LockstepRun final : public core::ExternalRobots {
     bool simulated = false;        // it is missing, and its controller steps here
     bool gone = false;             // its robot is
   };
-  /// Somebody who has connected, and not yet said for which robot.
+  /// A peer that has connected, and not yet named its robot.
   struct Visitor {
     std::unique_ptr<bridges::ByteLink> link;
     bridges::peer::FrameReader reader;

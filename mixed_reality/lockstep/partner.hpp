@@ -1,4 +1,4 @@
-// Whoever steps one robot's controller instead of the hub: a program elsewhere, or a bridge and its emulated firmware.
+// Steps one robot's controller instead of the hub: a program elsewhere, or a bridge and its emulated firmware.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -25,7 +25,7 @@ struct PartnerReport {
   std::uint64_t links = 0;           ///< times that a link was open
   std::uint64_t bytes_in = 0, bytes_out = 0;
   hal::TimeNs longest_wait_ns = 0;  ///< of wall time, for one answer
-  /// Its controller and the hub's copy; nothing: it has not said, or nobody compares.
+  /// Its controller and the hub's copy; nothing: it has not said, or there is no comparison.
   std::optional<bridges::peer::CopyComparison> controller = {};
 };
 

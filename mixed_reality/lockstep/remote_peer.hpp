@@ -18,14 +18,14 @@ class RemotePeer final : public Partner {
   /// Asks once more after this long, in case that bytes were lost.
   static constexpr hal::TimeNs kAskAgain_ns = 500 * hal::kNsPerMs;
 
-  /// `open` makes its link, and makes it anew when it was lost; empty: peers come by themselves. `session` tells this
+  /// `open` makes its link, and makes it again when it was lost; empty: peers come by themselves. `session` tells this
   /// run from others.
   RemotePeer(core::World& world, core::RobotId robot, std::string session, bridges::LinkOpener open,
              const hal::Log& log);
 
   /// The peer's controller is compared with this copy, the hub's own; nothing: it is not.
   void compare_with(std::optional<bridges::peer::ControllerCopy> hubs) { hubs_copy_ = std::move(hubs); }
-  /// Whether somebody who says so can be this robot's peer. Error: why not.
+  /// Whether a peer of that description can be this robot's. Error: why not.
   hal::Status judge(const bridges::peer::Hello& hello) const;
   /// A peer that has said Hello for this robot, and was found good.
   void take_over(std::unique_ptr<bridges::ByteLink> link, hal::TimeNs now);

@@ -1,4 +1,4 @@
-// Reads what real robots did to a recorded run, tick by tick.
+// Reads real robots' effects on a recorded run, tick by tick.
 #pragma once
 #include <cstdint>
 #include <map>

@@ -1,4 +1,4 @@
-// A run with real robots, computed again without them: what they did comes out of the run's record.
+// A run with real robots, computed again without them: their effects come out of the run's record.
 //
 // Until a chosen tick every tick has the same bits as in the run. From then on the robots are simulated ones, which go
 // on from where the real ones were; how far they go astray from these is measured as long as the record says.

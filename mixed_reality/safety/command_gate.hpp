@@ -34,7 +34,7 @@ class CommandGate {
   void steer(const std::optional<hal::WheelSpeeds>& wheels) noexcept { steered_ = wheels; }
 
   /// `alive`: it may move. `confine(type, command)` changes a command that moves it, and returns whether it did. `at`:
-  /// where the robot is; null: nobody knows.
+  /// where the robot is; null: unknown.
   template <class Confine>
   void prepare(const Supervisor& supervisor, bool alive, const hal::Pose* at, hal::TimeNs run_ns, Confine&& confine) {
     alive_ = alive;

@@ -15,7 +15,7 @@
 
 namespace tandem::mixed_reality {
 
-/// Where the robot is, nobody asks: no fence, no barrier. Not thread-safe; `latch` and `commit` allocate nothing but
+/// The robot's place plays no part: no fence, no barrier. Not thread-safe; `latch` and `commit` allocate nothing but
 /// for messages.
 class LoneRobot {
  public:

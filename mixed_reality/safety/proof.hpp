@@ -1,6 +1,6 @@
 // Proof that the robot which answers is the robot that was armed.
 //
-// Proved means: the same resolved device, not opened anew, every word of its identity as it was, and absent for at most
+// Proved means: the same resolved device, not reopened, every word of its identity as it was, and absent for at most
 // 2 s. The start of a run arms the robots that answer then, or within 2 s of it; after that, only a person arms one.
 #pragma once
 #include <cstdint>
@@ -21,7 +21,7 @@ enum class Doubt : std::uint8_t {
   None,
   Late,        ///< it answered for the first time when the run had begun, or it took another one's place
   Away,        ///< it did not answer for more than 2 s
-  OpenedAnew,  ///< its device was opened anew: anything may hang on it now
+  OpenedAnew,  ///< its device was reopened: anything may hang on it now
   Another      ///< a word of its identity is another one
 };
 
@@ -31,7 +31,7 @@ class Proof {
   static constexpr hal::TimeNs kAway_ns = 2 * hal::kNsPerSecond;
 
   /// Once a tick, after the bridge's `latch`. Before the run nothing is doubted. `now_ns` is CLOCK_MONOTONIC.
-  /// @returns what came up since the last look: a doubt is told once, and remembered by who asks.
+  /// @returns what came up since the last look: a doubt is told once, and remembered by the caller.
   Doubt look(RunPhase phase, const bridges::RobotBridge& bridge, hal::TimeNs now_ns);
   /// A person arms the robot that answers now; nothing where none does.
   void arm();

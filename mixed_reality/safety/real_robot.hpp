@@ -1,4 +1,4 @@
-// A real robot in a run: its bridge, the safety table, who it is, and the gate that its commands pass.
+// A real robot in a run: its bridge, the safety table, its identity, and the gate that its commands pass.
 //
 //   each tick:  robot.read(tick, now);  robot.judge(what others know, now);  controller steps if the verdict says so
 //               robot.gate().prepare(…);  barrier between robots;  robot.send(…)
@@ -41,7 +41,7 @@ class RealRobot {
 
   /// Guardians have stopped the robots because this program did not run: heeded by the next `judge`.
   void hub_was_frozen() noexcept { hub_was_frozen_ = true; }
-  /// Whether somebody would stop the robot if this program died.
+  /// Whether a guardian would stop the robot if this program died.
   void set_guarded(bool guarded) noexcept { guarded_ = guarded; }
   /// A person re-arms this robot, whichever answers now.
   void rearm();

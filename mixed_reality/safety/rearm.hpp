@@ -9,7 +9,7 @@
 
 namespace tandem::mixed_reality {
 
-/// Who re-arms a stopped robot. Whatever it says: a robot that is not proved to be the one that was armed (proof.hpp)
+/// Re-arming of a stopped robot. In any case: a robot that is not proved to be the one that was armed (proof.hpp)
 /// waits for a person.
 enum class RearmBy : std::uint8_t {
   Proved,    ///< a short outage ends by itself; every other stop waits for a person

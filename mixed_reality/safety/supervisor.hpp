@@ -26,7 +26,7 @@ struct Conditions {
   bool hook_holds = false;            ///< a hook does
   bool controller_failed = false;     ///< it threw
   bool hub_was_frozen = false;        ///< since the last judgement: it did not run for so long that it counted as dead
-  bool guardian_gone = false;         ///< nobody would stop it if this program died
+  bool guardian_gone = false;         ///< it would not be stopped if this program died
   bool robot_stopped_itself = false;  ///< since the last judgement: it restarted, or its own fail-safe took over
   Doubt doubt = Doubt::None;          ///< since the last judgement: it is perhaps not the robot that was armed
   bool battery_low = false;
@@ -73,7 +73,7 @@ struct Verdict {
 /// Condition for driving again when the cause is gone; each asks for more than the one before it. With the policy
 /// Never, those from Rearm on last until the end of the run.
 enum class Recovery : std::uint8_t {
-  Ends,      ///< time to settle: whoever held it lets go
+  Ends,      ///< time to settle: its holder lets go
   Settle,    ///< time to settle; a person's re-arm with the policy Operator
   Rearm,     ///< a person's re-arm; with the policy Time, that time
   Operator,  ///< a person's re-arm
@@ -105,13 +105,13 @@ class Supervisor {
   /// A person re-arms the robot: what needed that is forgotten. It then settles, if all is well. Nothing with the
   /// policy Never, and where no robot answers.
   void rearm() noexcept;
-  /// Whether it stands only because nobody re-armed it.
+  /// Whether it stands only for want of a re-arm.
   bool awaits_rearm() const noexcept { return well_ && latched_ != nullptr; }
-  /// Whether it is perhaps not the robot that was armed, or has lost its memory, and nobody has re-armed it since.
+  /// Whether it is perhaps not the robot that was armed, or has lost its memory, and was not re-armed since.
   bool unproved() const noexcept { return latched_ != nullptr && latched_->recovery == Recovery::Proof; }
 
   /// Leaves of a command what goes to the robot in this tick: the safe one while it may not drive; then, of those that
-  /// move it, what is no faster than a limit that grows evenly from 0. `at`: where the robot is; null: nobody knows.
+  /// move it, what is no faster than a limit that grows evenly from 0. `at`: where the robot is; null: unknown.
   void allow(const hal::PortType& type, void* command, const hal::Pose* at, hal::TimeNs now_ns) const noexcept;
   template <hal::ActuatorPort Port>
   Port allowed(Port wanted, hal::TimeNs now_ns, const hal::Pose* at = nullptr) const noexcept {

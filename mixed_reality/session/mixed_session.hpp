@@ -39,13 +39,13 @@ struct MixedOptions {
   /// Makes the tracker of one element of `<trackers>`; empty: there is none.
   std::function<bridges::MadeTracker(const core::TrackerItem&)> make_tracker = {};
   hal::TimeNs (*unix_clock)() noexcept = nullptr;  ///< the date, for trackers that stamp with it; null: the system's
-  /// Tells by whose doing deadlines were missed; called once, when the run begins; empty: nobody does.
+  /// Tells by whose doing deadlines were missed; called once, when the run begins; may be empty.
   std::function<std::unique_ptr<SchedulingLog>()> scheduling = {};
-  /// How often guardians have stopped the robots because this program did not run; empty: nobody counts that.
+  /// How often guardians have stopped the robots because this program did not run; empty: not counted.
   std::function<std::uint64_t()> freezes = {};
-  /// Whether the process lives that stops the robots when this one dies; empty: nobody asks.
+  /// Whether the process lives that stops the robots when this one dies; may be empty.
   std::function<bool()> guarded = {};
-  /// Set by a person who re-arms robots: all that wait for it; null: nobody can.
+  /// Set by a person who re-arms robots: all that wait for it; may be null.
   std::atomic<bool>* rearm_asked = nullptr;
   /// Called for a robot that is not there and is simulated instead: its bridge has ended, and is asked nothing more.
   std::function<void(const bridges::RobotBridge&)> on_left_out = {};
@@ -64,7 +64,7 @@ struct MixedOptions {
   hal::Log log;
 };
 
-/// Who takes the place of a real robot.
+/// The robot that takes the place of a real one.
 struct Replacement {
   std::string id;  ///< how the other robot is called
   std::string link;
@@ -77,7 +77,7 @@ struct Replacement {
 class MixedSession final : private core::ExternalRobots {
  public:
   /// Makes a twin of every robot of the world whose item has a `<bridge>`, and its real robot. `time` must outlive the
-  /// session. Error: a robot that cannot be made, or whose pose nobody can tell.
+  /// session. Error: a robot that cannot be made, or whose pose has no source.
   static hal::Result<std::unique_ptr<MixedSession>> make(std::unique_ptr<core::World> world,
                                                          const BridgeMaker& make_bridge, TimeSource& time,
                                                          const MixedOptions& options);
@@ -102,7 +102,7 @@ class MixedSession final : private core::ExternalRobots {
   /// it has no wheels; it may not drive, and why; the run has begun; `stop`.
   hal::Status turn(std::string_view robot, double turn_rad, const std::atomic<bool>& stop);
 
-  /// A run that somebody else steps: before the world starts. Error: a link or a tracker cannot be opened.
+  /// A run that is stepped elsewhere: before the world starts. Error: a link or a tracker cannot be opened.
   hal::Status begin();
   /// Before every tick; waits while the run is paused. False: `stop`, and no further tick.
   bool before_tick(const std::atomic<bool>& stop);
@@ -147,7 +147,7 @@ class MixedSession final : private core::ExternalRobots {
   hal::Status rearm(std::string_view robot);
   /// As of the last tick.
   std::vector<RealRobotStatus> status() const;
-  /// Who drives, stands, waits, cannot be reached: as of now.
+  /// Robots that drive, stand, wait, cannot be reached: as of now.
   std::vector<core::RollRow> roll_call() const;
   std::vector<TrackerStatus> trackers() const { return trackers_.status(now_.monotonic_ns); }
 

@@ -37,7 +37,7 @@ struct RealRobotStatus {
   std::string id;
   std::string device;    ///< id of the real robot: another one after a replacement
   std::string link;      ///< as in the experiment file
-  std::string identity;  ///< who answers; empty before it answered
+  std::string identity;  ///< the answering robot; empty before it answered
   std::string coming;    ///< id of the one that is to take its place; empty: none is
   core::RobotId robot;   ///< its twin
   LinkHealth health = LinkHealth::Connecting;

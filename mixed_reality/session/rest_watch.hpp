@@ -1,4 +1,4 @@
-// Knows of one real robot whether it rests: for people who are told which robots may move.
+// Knows of one real robot whether it rests, for the list of robots that may move.
 #pragma once
 #include <cmath>
 
@@ -9,7 +9,7 @@ namespace tandem::mixed_reality {
 
 /// A robot that was told to move is not known to rest until it answers again, is told to stand, and its encoders have
 /// stood for kStood (where it has none: until it was told so for that long), or until it has confirmed its stop. One
-/// that nobody has told anything is taken to rest.
+/// that got no command is taken to rest.
 class RestWatch {
  public:
   static constexpr hal::TimeNs kStood_ns = 300 * hal::kNsPerMs;

@@ -1,4 +1,4 @@
-// Checks what an experiment says of its real robots, before any link is opened.
+// Checks an experiment's real robots, before any link is opened.
 #pragma once
 #include "core/scenario/scenario.hpp"
 #include "hal/catalog.hpp"

@@ -1,4 +1,4 @@
-// What can be told of the peers of a run in lock-step before it begins.
+// Checks of the peers of a run in lock-step before it begins.
 #pragma once
 #include "core/scenario/scenario.hpp"
 #include "hal/element.hpp"

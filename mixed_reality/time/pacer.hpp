@@ -37,7 +37,7 @@ struct PaceLedger {
   std::uint64_t deadline_misses = 0;    ///< ticks that ended after the next one should have begun
   std::uint64_t skipped_slots = 0;      ///< whole slots of the schedule in which no tick could begin
   hal::TimeNs largest_lateness_ns = 0;  ///< of the end of a tick, behind its deadline
-  std::uint64_t misses_by_machine = 0;  ///< of `deadline_misses`; 0 where nobody looks (`Pacer::judge_by`)
+  std::uint64_t misses_by_machine = 0;  ///< of `deadline_misses`; 0 without a judge (`Pacer::judge_by`)
   static constexpr std::size_t kKept = 32;
   std::array<MissedDeadline, kKept> first_misses{};  ///< as many as there are
   hal::DurationHistogram wake_up;  ///< begin of a tick behind its place in the schedule, after a sleep
@@ -93,7 +93,7 @@ class Pacer {
   hal::TimeNs began_ns_ = 0;
   std::int64_t slot_ = 0;
   PaceLedger ledger_;
-  SchedulingLog* scheduling_ = nullptr;  // null: nobody tells
+  SchedulingLog* scheduling_ = nullptr;  // null: unknown
   SchedulingLog::ThreadUse use_;         // when the last tick ended
   hal::TimeNs woke_late_ns_ = 0;         // before this tick
   hal::TimeNs handed_on_ns_ = 0;         // by which this tick began late, and the machine was the cause

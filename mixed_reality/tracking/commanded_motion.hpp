@@ -1,4 +1,4 @@
-// Where a robot on wheels is between its poses and now, by what it was told and by how late it obeys.
+// The place of a robot on wheels between its poses and now, by its commands and their delay.
 #pragma once
 #include <cmath>
 #include <utility>

@@ -36,7 +36,7 @@ class DelayWatch {
   bool judge(hal::TimeNs now_ns, double counted_s) noexcept;
   /// The longest of the last few that were believed; 0: none was.
   double delay_s() const noexcept;
-  /// "its wheels", "trackers": who told the last one.
+  /// "its wheels", "trackers": the source of the last one.
   std::string_view told_by() const noexcept { return told_by_; }
 
  private:

@@ -77,7 +77,7 @@ class FusedPose final : public PoseSource {
   const hal::WheelEncoders& encoders_;
   const hal::Gyroscope* gyroscope_;
   double wheel_base_m_;
-  const CommandedMotion* motion_ = nullptr;              // null: nobody says what it is told
+  const CommandedMotion* motion_ = nullptr;              // null: its commands are unknown
   double left_m_s_ = 0.0, right_m_s_ = 0.0;              // before the last reading of the wheels
   double unsteady_rad_s_ = 0.0, unsteady_before_ = 0.0;  // by which the wheels' turn rate changed at the last two
   FusedPoseParams params_;

@@ -82,7 +82,7 @@ class PoseFilter {
   void roll(hal::TimeNs taken_ns, double left_m, double right_m, std::optional<double> gyroscope_rad = {},
             double gyroscope_sd_rad = 0.0, const UnevenWay& uneven = {}) noexcept;
   Taken correct(const PoseMeasurement& pose) noexcept;
-  /// The robot was put somewhere: begins anew there, keeps what was learnt of its wheels.
+  /// The robot was put somewhere: starts again there, keeps what was learnt of its wheels.
   void put(const core::Pose& pose, hal::TimeNs at_ns, double sd_m, double sd_rad) noexcept;
 
   /// As of the last `roll`.

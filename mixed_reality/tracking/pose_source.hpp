@@ -57,7 +57,7 @@ class PoseSource {
   virtual std::uint64_t jumps() const noexcept { return 0; }
   /// How often it believed in the end that the robot came less far than its wheels rolled.
   virtual std::uint64_t slips() const noexcept { return 0; }
-  /// Whether sources of it say different places now, and nobody knows which is right.
+  /// Whether sources of it say different places now, and none is known to be right.
   virtual bool disputed() const noexcept { return false; }
   /// What a tracker saw of it last, as it came; null: there is none that has seen it.
   virtual const PoseMeasurement* newest_sighting() const noexcept { return nullptr; }

@@ -14,7 +14,7 @@ class SlipWatch {
   enum class Found : std::uint8_t {
     Nothing,
     Slip,  ///< the wheels rolled farther than the robot came
-    Moved  ///< the robot came farther than its wheels rolled: somebody moved it
+    Moved  ///< the robot came farther than its wheels rolled: it was moved
   };
   static constexpr double kSpan_s = 1.0;    ///< over which both are compared
   static constexpr double kMost_m = 0.05;   ///< that they may differ …

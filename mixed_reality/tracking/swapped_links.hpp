@@ -17,7 +17,7 @@ namespace tandem::mixed_reality {
 /// the same, and another robot's wheels roll as it is seen to move itself: short ways look alike by chance, and a held
 /// robot's way is short. Over kAlone_m and more the first alone is believed, for the other one may be held. Any
 /// permutation is found pair by pair, a robot that stands in it included. Slipping wheels, robots that are carried, and
-/// trackers that err are no swap: nobody moves as they say.
+/// trackers that err are no swap: no robot moves as they say.
 ///
 /// Robots that move alike cannot be told apart; they are found when they do not.
 class SwappedLinks {
@@ -29,10 +29,10 @@ class SwappedLinks {
 
   struct Found {
     std::size_t robot;     ///< whose wheels roll
-    std::size_t moves_as;  ///< who is seen to move so
+    std::size_t moves_as;  ///< the robot that is seen to move so
   };
 
-  /// Begins anew where the number changes.
+  /// Starts again where the number changes.
   void resize(std::size_t robots);
   std::size_t size() const noexcept { return robots_.size(); }
   /// Another robot is behind this link, or its place is not known any more.

@@ -83,7 +83,7 @@ class Twin {
   void list(core::SpaceInputs& inputs) const;
   const std::string& id() const noexcept { return id_; }
   core::RobotId robot() const noexcept { return robot_; }
-  /// What a person, and who guards it, tell the robot.
+  /// Commands of persons and guards to the robot.
   RealRobot& real_robot() noexcept { return robot_now_; }
   const RealRobot& real_robot() const noexcept { return robot_now_; }
   bridges::RobotBridge& real() noexcept { return robot_now_.bridge(); }
@@ -97,7 +97,7 @@ class Twin {
   const TrackedPose& tracked() const noexcept { return tracked_; }
   /// The newest reading of all that the robot is asked for; null: none came yet.
   const hal::Reading* newest_reading() const noexcept;
-  const hal::WheelEncoders* encoders() const noexcept { return encoders_; }  ///< null: nobody asks for them
+  const hal::WheelEncoders* encoders() const noexcept { return encoders_; }  ///< null: not asked for
   const Verdict& verdict() const noexcept { return robot_now_.verdict(); }
   /// The wheel speeds last handed to the robot.
   const hal::WheelSpeeds& sent() const noexcept { return sent_; }

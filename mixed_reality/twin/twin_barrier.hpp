@@ -22,7 +22,7 @@ struct BarrierCounts {
 class TwinBarrier {
  public:
   static constexpr double kSigmas = 3.0;      ///< that a pose may be wrong by
-  static constexpr double kError_rad = 0.02;  ///< of headings whose uncertainty nobody knows
+  static constexpr double kError_rad = 0.02;  ///< of headings of unknown uncertainty
   static constexpr double kTouch_m = 0.01;    ///< less deep is no trespass
 
   /// The filter must outlive this.

@@ -1,4 +1,4 @@
-// The plan of batches: which runs of a study each job of a cluster makes, and with what.
+// The plan of batches: the runs of a study by jobs of a cluster, and their inputs.
 #pragma once
 #include <cstdint>
 #include <string>

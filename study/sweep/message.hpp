@@ -1,4 +1,4 @@
-// What a worker tells of a run, as bytes.
+// A worker's messages about a run, as bytes.
 #pragma once
 #include <cstdint>
 #include <optional>

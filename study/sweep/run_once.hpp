@@ -59,7 +59,7 @@ class Runner {
   std::unique_ptr<core::World> world_;
   std::int64_t configuration_ = -1;  // of the world
   double kept_s_ = 0.0;              // when the run was kept last, or began
-  bool takes_long_ = false;          // the last run did: worlds that are made anew can be kept
+  bool takes_long_ = false;          // the last run did: worlds that are made again can be kept
 };
 
 }  // namespace tandem::study

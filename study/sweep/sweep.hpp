@@ -1,4 +1,4 @@
-// Makes all runs of a study on all cores, and hands over what came of each.
+// Makes all runs of a study on all cores, and hands over their results.
 #pragma once
 #include <atomic>
 #include <cstdint>

@@ -31,7 +31,7 @@ class Worker {
   bool give(std::int64_t run, double now_s);
   /// Runs that it was given and has not told of, in their order.
   const std::deque<std::int64_t>& given() const noexcept { return given_; }
-  /// One ahead of short runs, so that it never waits; of long ones nobody else shall wait for it at the end.
+  /// One ahead of short runs, so that it never waits; of long ones no other worker shall wait for it at the end.
   bool may_be_given_more() const noexcept { return one_run_ ? !used_ : given_.size() < (short_runs_ ? 2 : 1); }
   /// Since when it makes the first of them.
   double since_s() const noexcept { return since_s_; }

@@ -1,4 +1,4 @@
-// What is read out of a table to be drawn: one value of every run, or samples over its time.
+// Selections from a table to be drawn: one value of every run, or samples over its time.
 #pragma once
 #include <cstdint>
 #include <string>

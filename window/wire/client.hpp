@@ -29,7 +29,7 @@ class Client {
     int code = 0;       ///< of a closing one; 1006: the connection ended without one
   };
 
-  /// `address` is that of Window::address. Errors: nobody is there; the upgrade was refused, with the status.
+  /// `address` is that of Window::address. Errors: no server; the upgrade was refused, with the status.
   static hal::Result<Client> connect(const std::string& address, const std::vector<std::string>& more_headers = {});
   Client(Client&& other) noexcept;
   Client& operator=(Client&& other) noexcept;

@@ -26,8 +26,8 @@ struct ViewerCommand {
 /// Errors: no JSON object, deeper than kMostTextDepth, no text "do", an id that is neither a number nor a short text.
 hal::Result<ViewerCommand> read_viewer_text(std::string_view text);
 
-/// Whether who has this role may say this command. A viewer may ask how things are and stop all real robots: a stop
-/// endangers nobody, and what follows it needs an operator.
+/// Whether this role may say this command. A viewer may ask how things are and stop all real robots: a stop
+/// is harmless, and what follows it needs an operator.
 bool may_say(UserRole role, std::string_view command) noexcept;
 
 /// The texts of a list under this name; what is no list of texts is an error that says so. Absent: empty.

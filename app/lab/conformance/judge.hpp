@@ -1,4 +1,4 @@
-// Judges what a plug-in registers: by its tables, and in small worlds.
+// Judges the entries of a plug-in: by its tables, and in small worlds.
 #pragma once
 #include <string>
 

@@ -1,4 +1,4 @@
-// A controller that takes whatever devices it is told to take, and commands them at random.
+// A controller that takes the devices of its configuration, and commands them at random.
 #pragma once
 #include <string_view>
 #include <vector>

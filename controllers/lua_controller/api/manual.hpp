@@ -1,4 +1,4 @@
-// What scripts in Lua have: names, for people and for tests.
+// Names that scripts in Lua have, for people and for tests.
 #pragma once
 #include <span>
 #include <string>

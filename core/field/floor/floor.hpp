@@ -9,7 +9,7 @@ namespace tandem::core {
 /// Reflectance over the arena, 0 black to 1 white.
 class FloorField final : public PointField<FloorField> {
  public:
-  static constexpr float kGrey = 0.5F;  ///< where nobody says otherwise
+  static constexpr float kGrey = 0.5F;  ///< by default
 
   /// `pixels_per_m`: of one that hooks paint; 0: they do not.
   FloorField(const RasterArea& area, double pixels_per_m, Raster raster = {})

@@ -83,7 +83,7 @@ struct BodyProxy {
   Vector3 led_to_m{};
 
   double hop_m = 0.0;     ///< how far any point of it moves in a sub-step
-  double margin_m = 0.0;  ///< within which it may move before candidates are found anew
+  double margin_m = 0.0;  ///< within which it may move before candidates are found again
   double from_x_m = 0.0, from_y_m = 0.0;
   Prism prism;
 

@@ -29,7 +29,7 @@ struct Surfaces {
 };
 
 /// The one that stands for all objects of its heap: those that touch one another, directly or through others. Shortens
-/// the way for the next who asks.
+/// the way for the next caller.
 inline BodyProxy& top_of_heap(BodyProxy& proxy) noexcept {
   BodyProxy* top = &proxy;
   while (top->heap != nullptr) {

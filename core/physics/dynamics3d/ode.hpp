@@ -20,7 +20,7 @@ struct OdeError : std::runtime_error {
 void use_ode();
 
 /// ODE shuffles the order in which it treats constraints, with random numbers that all threads share. Here every thread
-/// has its own, which start anew from `seed`.
+/// has its own, which start again from `seed`.
 void seed_ode(std::uint64_t seed) noexcept;
 
 /// Names one of ODE's things. These live in the memory of their world and go with it; so may a copy of the name.

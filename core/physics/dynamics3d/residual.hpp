@@ -26,7 +26,7 @@ class Residual {
   };
   void begin(const Settings& settings) noexcept;
 
-  /// Has ODE tell the force of a joint that is made anew in every sub-step.
+  /// Has ODE tell the force of a joint that is made again in every sub-step.
   void add_contact(dJointID joint, dBodyID a, dBodyID b, const dContact& contact);
   /// A wheel's axle, whose motor strives for `rim_m_s` forwards.
   void add_axle(dJointID axle, dBodyID wheel, dBodyID chassis, double radius_m, double rim_m_s, double most_Nm);

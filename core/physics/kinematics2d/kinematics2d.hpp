@@ -45,7 +45,7 @@ class Kinematics2d final : public Engine {
   class Settling;
 
   Params params_;
-  std::atomic<const SpaceStores*> too_fast_in_{nullptr};  // where somebody is, in this tick
+  std::atomic<const SpaceStores*> too_fast_in_{nullptr};  // where bodies are, in this tick
   std::unique_ptr<Active[]>
       active_;  // a list for every chunk of entries, with room for all; unused ends stay untouched
   std::vector<std::uint32_t> counts_;  // how long each is

@@ -1,4 +1,4 @@
-// Layers: what can be drawn over a space, or told beside it, when somebody asks for it.
+// Layers: drawings over a space and panels beside it, on request.
 //
 //   class Reach final : public core::Layer {
 //    public:
@@ -53,7 +53,7 @@ class Panel {
 
 /// Looks at the world and changes nothing of it. Called between steps by the thread that steps, and only while somebody
 /// has switched the layer on. What it throws is told once; the layer is then off for good. Keeps no reference to what
-/// it was shown: a run may begin anew with another space, and may go back to an earlier tick.
+/// it was shown: a run may start again with another space, and may go back to an earlier tick.
 class Layer {
  public:
   Layer() noexcept { hal::detail::note_surface<StoresSurface>(); }
@@ -92,7 +92,7 @@ LayerType layer_type(std::string_view name, std::string_view summary) {
   return type;
 }
 
-// --- for those who draw ---
+// --- for drawing ---
 
 /// A point of a body in W: `p_B` is in the body frame, from the centre of the base.
 inline Sketch::Point point_of(const Pose& body, const Sketch::Point& p_B) noexcept {

@@ -1,4 +1,4 @@
-// The layers of one run: which are on, for which robots, and what they show now.
+// The layers of one run: which are on, for which robots, and their present drawings.
 #pragma once
 #include <cstddef>
 #include <memory>

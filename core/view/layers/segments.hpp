@@ -1,4 +1,4 @@
-// Drawings as straight segments: what a viewer in space gets of them.
+// Drawings as straight segments, for viewers in space.
 #pragma once
 #include <cstdint>
 #include <string>
