@@ -31,6 +31,10 @@ class Replaying final : public core::RunPart {
   Replaying(RunPlan& plan, ReplayRun& replay) : plan_(plan), replay_(replay) {}
   std::string_view name() const override { return "replay"; }
   core::RunTurn turn() const override { return core::RunTurn::Compare; }
+  bool before_tick(core::Run& run) override {
+    if (replay_.changes_on_the_way()) run.world().begin_saving();
+    return true;
+  }
   bool after_tick(core::Run& run) override {
     core::World& world = run.world();
     plan_.as_before = replay_.tick_done(*plan_.repeated, world) && plan_.as_before;

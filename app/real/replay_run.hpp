@@ -42,6 +42,8 @@ class ReplayRun {
   /// What a record of the replay is to hold; null: nothing, because robots are simulated.
   const core::SpaceInputs* inputs() const noexcept;
 
+  /// Whether settings change between two ticks.
+  bool changes_on_the_way() const noexcept { return changed_.has_value(); }
   /// After every tick: compares it with the record. False: it is not as it was, and was not meant to differ; told.
   bool tick_done(const core::Repeatable& recorded, const core::World& world);
   /// Between two ticks: where the robots are simulated from the next on, what is to change does. A failure is the

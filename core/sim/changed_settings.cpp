@@ -350,7 +350,7 @@ hal::Status World::continue_with(const Scenario& changed) {
   w.identity = std::make_shared<int>(0);
   w.kept_checkpoints.forget_all();
   hal::Status taken = w.take_things(before);
-  if (taken.ok()) taken = w.factory->go_on_from(before);
+  if (taken.ok()) taken = w.factory->go_on_from(before, [&w](std::size_t block) { return w.keep_memory(block); });
   if (!taken.ok()) w.fail("with the changed settings" + w.at_tick() + ": " + taken.error().message);
   w.fit_ledgers();
   bool any_hook = false;
@@ -391,11 +391,11 @@ void World::Impl::change_hook(std::size_t i) {
 
 // --- robots ---
 
-hal::Status RobotFactory::go_on_from(const Scenario& before) {
+hal::Status RobotFactory::go_on_from(const Scenario& before, const KeepMemory& keep) {
   slab_ = nullptr;
   const std::size_t groups = stores_.groups.size();
   for (std::size_t g = 0; g < groups; ++g) {
-    if (hal::Status done = change_group(g, before); !done.ok()) return done;
+    if (hal::Status done = change_group(g, before, keep); !done.ok()) return done;
   }
   for (std::uint32_t entity = 0; entity < stores_.robots.size(); ++entity) {
     const RobotEntity& e = stores_.robots[entity];
@@ -409,7 +409,7 @@ hal::Status RobotFactory::go_on_from(const Scenario& before) {
 }
 
 /// Of the robots that stay in their group: other parameters make their controllers anew, other devices do not.
-hal::Status RobotFactory::change_group(std::size_t g, const Scenario& before) {
+hal::Status RobotFactory::change_group(std::size_t g, const Scenario& before, const KeepMemory& keep) {
   RobotGroup& group = stores_.groups[g];
   const RobotItem was = *group.item;
   RobotItem now = was;
@@ -439,7 +439,7 @@ hal::Status RobotFactory::change_group(std::size_t g, const Scenario& before) {
   group.media.clear();
   for (const std::size_t b : group.blocks) devices_.blocks[b] = {};
   if (other_params) {
-    if (hal::Status made = make_anew(g); !made.ok()) return made;
+    if (hal::Status made = make_anew(g, keep); !made.ok()) return made;
   }
   complete(g);
   stores_.bodies_changed = true;  // how far devices reach may have changed
@@ -447,19 +447,24 @@ hal::Status RobotFactory::change_group(std::size_t g, const Scenario& before) {
 }
 
 /// The controllers of a group, with its parameters of now. Those of robots with parameters of their own stay.
-hal::Status RobotFactory::make_anew(std::size_t g) {
+hal::Status RobotFactory::make_anew(std::size_t g, const KeepMemory& keep) {
   for (const std::size_t b : stores_.groups[g].blocks) {
     for (std::uint32_t slot = 0; slot < stores_.blocks[b].used; ++slot) {
+    const std::function<hal::Status()> give_back = keep(b);
       RobotBlock& block = stores_.blocks[b];
       if (block.constructed[slot] == 0 || (slot < block.params.size() && block.params[slot] != nullptr)) continue;
       block.constructed[slot] = 0;
       stores_.groups[g].controller->destroy(block.controller(slot));
-      reset_row(stores_.groups[g], block, slot);
-      block.halted[slot] = static_cast<std::uint8_t>(block.halted[slot] & ~bit(HaltOwner::Controller));
+      if (!give_back) {
+        reset_row(stores_.groups[g], block, slot);
+        block.halted[slot] = static_cast<std::uint8_t>(block.halted[slot] & ~bit(HaltOwner::Controller));
+      }
       const std::string why = construct({static_cast<std::uint32_t>(b), slot}, stores_.groups[g].params);
       if (!why.empty()) return hal::Error{why};
     }
   }
+    if (!give_back) continue;
+    if (hal::Status given = give_back(); !given.ok()) return given;
   return {};
 }
 

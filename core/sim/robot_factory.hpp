@@ -77,7 +77,11 @@ class RobotFactory {
 
   /// The scenario has changed from `before` while the run goes on, in what World::continue_with takes over: does that
   /// for all robots. Error: a controller that cannot be made; some are changed then and others not.
-  hal::Status go_on_from(const Scenario& before);
+  /// Takes what the controllers of a block remember. @returns what gives it to those that are made in their place;
+  /// empty: they begin anew.
+  using KeepMemory = std::function<std::function<hal::Status()>(std::size_t block)>;
+
+  hal::Status go_on_from(const Scenario& before, const KeepMemory& keep);
 
   /// "controller 'c' (library 'x') of robot 'ep3'": who has this slot of a block. For hal::PluginCall.
   void name_controller(std::size_t block, std::size_t slot, hal::FixedText& out) const noexcept;
@@ -117,8 +121,8 @@ class RobotFactory {
   void end_row(Room& room);
   static void reset_row(const RobotGroup& group, RobotBlock& block, std::size_t slot);
   static hal::Error cannot_be_made(const RobotItem& item, const Problems& problems);
-  hal::Status change_group(std::size_t g, const Scenario& before);
-  hal::Status make_anew(std::size_t g);
+  hal::Status change_group(std::size_t g, const Scenario& before, const KeepMemory& keep);
+  hal::Status make_anew(std::size_t g, const KeepMemory& keep);
   hal::Status move(std::uint32_t entity, const RobotItem& item);
   void give_back(std::size_t g, Slot slot, const Taken& before, std::uint32_t entity_before);
   hal::Status can_hold(Slot at) const;

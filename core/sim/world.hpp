@@ -109,12 +109,14 @@ class World {
 
   /// Goes on with the settings of `changed`, which otherwise is the scenario that the world was made of, from the next
   /// step on. Bodies, mechanisms, chance and time stay, and so does all that nothing says otherwise of. Robots that
-  /// have another configuration or other parameters get a new controller and safe commands, like robots that are added;
-  /// devices that are listed with other options, and fitted parameters, count at once; a hook with other options is
-  /// made again, called (`before_run`), and gets back what it gave to `Hook::save`; lights, objects and floors that the
-  /// run has not changed are as they say. Snapshots from before are void, and there is no reset. Call between steps.
-  /// Errors: `can_continue_with`, then nothing has changed; what cannot be made in this world, and what the run has
-  /// changed, too: the run has failed then.
+  /// have another configuration get a new controller and safe commands, like robots that are added. Those that have
+  /// other parameters go on with what their controllers remember, as after `load`; where that cannot be told apart
+  /// (`begin_saving` was not called at the start, the class owns memory, or cannot be copied), they begin anew, and the
+  /// log says so. Devices that are listed with other options, and fitted parameters, count at once; a hook with other
+  /// options is made again, called (`before_run`), and gets back what it gave to `Hook::save`; lights, objects and
+  /// floors that the run has not changed are as they say. Snapshots from before are void, and there is no reset. Call
+  /// between steps. Errors: `can_continue_with`, then nothing has changed; what cannot be made in this world, and what
+  /// the run has changed, too: the run has failed then.
   hal::Status continue_with(const Scenario& changed);
   /// Whether it can. Error: names what differs and cannot change while a run goes on. `changed` is one of which a world
   /// can be made: that is not checked here.

@@ -192,6 +192,8 @@ struct World::Impl final : hal::RobotLog::Sink {
   hal::Result<FieldChanges> other_fields(const Scenario& next) const;
   hal::Status remember_block(hal::Archive& archive, std::size_t block, const Addresses& addresses);
   hal::Status remember_own(hal::Archive& archive, std::size_t block);
+  hal::Status remember_controllers(hal::Archive& archive, std::size_t block, const Addresses& addresses);
+  std::function<hal::Status()> keep_memory(std::size_t block);
   hal::Status remember_changed(hal::Archive& archive, std::size_t block, const Addresses& addresses);
   hal::Status remember_engines(hal::Archive& archive);
   void remember_accuracy(hal::Archive& archive);

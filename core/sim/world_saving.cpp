@@ -306,8 +306,39 @@ hal::Status World::Impl::remember_block(hal::Archive& archive, std::size_t index
     group.controller->destroy(block.controller(slot));
     block.constructed[slot] = 0;
   }
-  return group.controller->remember != nullptr ? remember_own(archive, index)
-                                               : remember_changed(archive, index, addresses);
+  return remember_controllers(archive, index, addresses);
+}
+
+hal::Status World::Impl::remember_controllers(hal::Archive& archive, std::size_t index, const Addresses& addresses) {
+  const hal::ControllerType& type = *stores().groups[stores().blocks[index].group].controller;
+  return type.remember != nullptr ? remember_own(archive, index) : remember_changed(archive, index, addresses);
+}
+
+/// For controllers of other parameters, as RobotFactory::KeepMemory: as World::load gives it to them.
+std::function<hal::Status()> World::Impl::keep_memory(std::size_t index) {
+  const RobotBlock& block = stores().blocks[index];
+  const RobotGroup& group = stores().groups[block.group];
+  const Addresses addresses;
+  hal::Archive archive;
+  hal::Status kept;
+  if (group.controller->remember == nullptr && (!as_started || stores().robots.size() != as_started->robots))
+    kept = hal::Error{"the controller '" + std::string(group.controller->name) +
+                      "' does not say what it remembers (hal::Controller), and how it began is not known: robots were "
+                      "added since, or the run began anew"};
+  if (kept.ok()) kept = remember_controllers(archive, index, addresses);
+  if (!kept.ok()) {
+    if (index == group.blocks.front())
+      options.log.warning("robots begin anew with the changed settings: " + kept.error().message);
+    return {};
+  }
+  std::vector<std::vector<std::byte>> ports;  // that constructors may write into
+  for (std::size_t p = 0; p < block.ports.size(); ++p)
+    ports.emplace_back(block.ports[p], block.ports[p] + group.ports[p]->size * block.used);
+  return [this, index, ports = std::move(ports), bytes = archive.take()] {
+    for (std::size_t p = 0; p < ports.size(); ++p) std::ranges::copy(ports[p], stores().blocks[index].ports[p]);
+    hal::Archive own(bytes);
+    return remember_controllers(own, index, Addresses());
+  };
 }
 
 /// Of controllers that say what they remember.

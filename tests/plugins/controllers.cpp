@@ -65,6 +65,23 @@ class CountingDrive final : public Drive {
   std::uint8_t steps_ = 0;
 };
 
+/// The same, and its copies have memory of their own.
+class OwningDrive final : public Drive {
+ public:
+  OwningDrive(Robot& robot, const Params& params) : Drive(robot, params), says_(robot.actuator<RangeAndBearingSend>()) {
+    says_.size = 1;
+  }
+  void step() override {
+    Drive::step();
+    said_.push_back(0);
+    says_.payload[0] = static_cast<std::uint8_t>(said_.size());
+  }
+
+ private:
+  RangeAndBearingSend& says_;
+  std::vector<std::uint8_t> said_;
+};
+
 /// Takes every device of an e-puck, drives, shines and talks.
 class Everything final : public Controller {
  public:
@@ -453,6 +470,7 @@ class Picky final : public Controller {
 void register_all(Registrar& registrar) {
   registrar.add_controller<Drive>("drive", "Constant wheel speeds.");
   registrar.add_controller<CountingDrive>("counting_drive", "Constant wheel speeds; says how often it has stepped.");
+  registrar.add_controller<OwningDrive>("owning_drive", "The same; owns memory.");
   registrar.add_controller<Everything>("everything", "Takes every device.");
   registrar.add_controller<Forker>("forker", "Forks a child.");
   registrar.add_controller<Thrower>("thrower", "Throws at tick 3.");

@@ -302,6 +302,33 @@ TEST(Saving, AParameterHoldsBesideWhatChangesInItsWord) {
   EXPECT_DOUBLE_EQ(command<hal::WheelSpeeds>(other, "ep0").right_m_s, 6e-4) << "its sixth step, and on";
 }
 
+/// Two ways to go on with other parameters: in this world, and from its state in another.
+void expect_same_ways_on(const Scene& before, const Scene& changed) {
+  auto one = make(before);
+  start(one);
+  (void)hashes(*one.world, 40);
+  auto other = make(changed);
+  ASSERT_EQ(another_way(other, saved(*one.world), before), "");
+  auto straight = make(before);
+  start(straight);
+  (void)hashes(*straight.world, 40);
+  const hal::Status went_on = one->continue_with(changed.scenario);
+  ASSERT_TRUE(went_on.ok()) << went_on.error().message;
+  const std::vector<std::uint64_t> on = hashes(*one.world, 30);
+  EXPECT_EQ(on, hashes(*other.world, 30));
+  EXPECT_NE(on, hashes(*straight.world, 30));
+}
+
+TEST_P(Saved, ARunThatGoesOnWithOtherParametersIsTheOneThatIsResumedWithThem) {
+  Scene changed = crowd(GetParam());
+  changed.scenario.controllers[0].params.attributes[0].value = "0.02";
+  expect_same_ways_on(crowd(GetParam()), changed);
+}
+
+TEST(Saving, AParameterBesideAMemberThatChangesHoldsWhereverTheRunGoesOn) {
+  expect_same_ways_on(tagged(false), tagged(true));
+}
+
 TEST(Saving, AnotherSeedLeavesRobotsAndTheirControllersTogether) {
   const Scene before = tagged(false);
   auto one = make(before);
