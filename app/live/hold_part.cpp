@@ -71,7 +71,7 @@ core::LiveOptions options_of(const RunPlan& plan) {
   if (!live.speed && plan.world->scenario().time_mode == core::TimeMode::Realtime) live.speed = 1.0;
   live.real_robots = real != nullptr;
   live.stay = options.hold.stay;
-  live.can_go_back = (options.hold.wanted || options.view.on) && !plan.peers;  // peers cannot be put back
+  live.can_go_back = options.hold.wanted || options.view.on;
   live.memory_bytes = options.hold.memory_MB * 1'000'000;
   if (plan.repeated != nullptr) live.repeat = plan.repeated->actions;
   live.log = plan.world_log;

@@ -199,8 +199,11 @@ hal::Result<Json> LiveRun::Impl::history(const Json& c) {
   stride = std::max(stride, (last - first) / static_cast<std::int64_t>(kMostSamples) + 1);
   const hal::Tick affordable = kHistory_ns / std::max<hal::TimeNs>(1000, timeline.step_cost_ns());
   Json answer;
-  if (last - first + timeline.ticks_to(first) > affordable) {
+  if (timeline.ticks_of_look(first, last) > affordable) {
     first = std::max(first, last - affordable);
+    if (!timeline.no_checkpoint().empty() && timeline.ticks_of_look(first, last) > affordable)
+      return hal::Error{"there is no past to be had within a second, for the run is computed again: " +
+                        timeline.no_checkpoint()};
     answer["bounded"] = "the last " + std::to_string(last - first) +
                         " ticks: to compute more of them again would hold the run up for more than a second";
   }

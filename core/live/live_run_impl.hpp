@@ -22,7 +22,12 @@ struct LiveRun::Impl {
         clock(options.clock != nullptr ? *options.clock : system_clock),
         timeline(world, clock, options),
         paused(options.paused && (!options.real_robots || options.pause_real)),
-        speed(options.speed) {}
+        speed(options.speed) {
+    timeline.on_way = [this] {
+      shown();
+      return leaving || !stop_asked();
+    };
+  }
 
   World& world;
   const LiveOptions options;
@@ -43,6 +48,7 @@ struct LiveRun::Impl {
   bool paused;
   std::optional<double> speed;
   std::int64_t steps_wanted = 0;  // single ticks
+  bool leaving = false;
   std::string stopped_by;
   std::string failure;
   hal::TimeNs anchor_ns = 0;  // of the schedule
@@ -125,6 +131,7 @@ struct LiveRun::Impl {
   /// A look back at the end of the run leaves it as it is, not as it was.
   void leave() {
     if (!timeline.known()) return;
+    leaving = true;
     if (const hal::Status there = timeline.go_to(timeline.latest_tick()); !there.ok())
       options.log.warning(there.error().message);
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/live/source_files.hpp"
 #include "core/live/touch.hpp"
 #include "hal/json/json_access.hpp"
 #include "hal/unit.hpp"
@@ -17,6 +18,8 @@ using hal::Json;
 constexpr hal::TimeNs kCheaper = 100;
 /// Whoever goes back a long way keeps a checkpoint so many ticks before, for the next single steps back.
 constexpr std::int64_t kNear = 16;
+/// How often somebody who waits for ticks that are computed again hears of it.
+constexpr hal::TimeNs kSaidEvery_ns = 2 * hal::kNsPerSecond;
 
 bool is_reset(const Json& action) {
   return hal::text_of(action, "do") == "reset";
@@ -42,12 +45,11 @@ Timeline::Timeline(World& world, LiveClock& clock, const LiveOptions& options)
 }
 
 void Timeline::start() {
-  base_tick_ = world_.tick();
-  begin_anew();
+  begin_anew(world_.tick() == 0);
 }
 
-/// The way back ends here.
-void Timeline::begin_anew() {
+/// The way back ends here. `from_start`: a reset comes to the same state.
+void Timeline::begin_anew(bool from_start) {
   first_step_ = latest_ = step_;
   base_tick_ = world_.tick();
   first_touch_ = applied_;
@@ -55,35 +57,49 @@ void Timeline::begin_anew() {
   checkpoints_.clear();
   bytes_ = 0;
   since_checkpoint_ns_ = 0;
-  if (wanted_) keep();
+  if (!wanted_) return;
+  no_way_back_.clear();
+  from_start_ = from_start;
+  keep();
+  if (!no_checkpoint_.empty() && no_way_back_.empty()) scripts_ = source_files(world_);
 }
 
 // --- checkpoints ---
 
-/// Keeps this moment. What cannot be kept now cannot be kept later either.
-bool Timeline::keep() {
-  since_checkpoint_ns_ = 0;
-  if (!no_way_back_.empty() || world_.state() == RunState::Failed) return false;
-  const hal::TimeNs began_ns = clock_.now_ns();
+hal::Result<Snapshot> Timeline::take() const {
   hal::Result<Snapshot> snapshot = world_.snapshot_of_all();
-  if (!snapshot.ok()) {
-    no_way_back_ = snapshot.error().message;
-  } else if (snapshot.value().bytes() > memory_bytes_) {
-    no_way_back_ = "a checkpoint of this run takes " + megabytes(snapshot.value().bytes()) + ", more than the " +
-                   megabytes(memory_bytes_) + " that may be kept; allow more (--view-memory)";
+  if (!snapshot.ok() || snapshot.value().bytes() <= memory_bytes_) return snapshot;
+  return hal::Error{"a checkpoint of this run takes " + megabytes(snapshot.value().bytes()) + ", more than the " +
+                    megabytes(memory_bytes_) + " that may be kept; allow more (--view-memory)"};
+}
+
+/// Keeps this moment. What cannot be kept now cannot be kept later either.
+void Timeline::keep() {
+  since_checkpoint_ns_ = 0;
+  if (!no_way_back_.empty() || world_.state() == RunState::Failed) return;
+  const hal::TimeNs began_ns = clock_.now_ns();
+  Checkpoint kept{step_, world_.state_hash(), {}};
+  const bool could = no_checkpoint_.empty();
+  if (could) {
+    hal::Result<Snapshot> snapshot = take();
+    if (snapshot.ok())
+      kept.snapshot = std::move(snapshot).value();
+    else
+      no_checkpoint_ = snapshot.error().message;
   }
-  if (!no_way_back_.empty()) {
-    checkpoints_.clear();
-    bytes_ = 0;
-    return false;
+  if (!kept.snapshot && checkpoints_.empty() && !(from_start_ && world_.can_reset(world_.scenario()).ok())) {
+    no_way_back_ = no_checkpoint_;
+    return;
   }
-  bytes_ += snapshot.value().bytes();
-  const auto after =
-      std::find_if(checkpoints_.begin(), checkpoints_.end(), [&](const Checkpoint& c) { return c.step > step_; });
-  checkpoints_.insert(after, {step_, world_.state_hash(), std::move(snapshot).value()});
+  if (could && !kept.snapshot)
+    log_.info("going back computes the run again from tick " +
+              std::to_string(checkpoints_.empty() ? world_.tick() : tick_of(nearest(step_)->step)) + ": " +
+              no_checkpoint_);
+  bytes_ += kept.bytes();
+  const auto after = std::ranges::upper_bound(checkpoints_, step_, {}, &Checkpoint::step);
+  checkpoints_.insert(after, std::move(kept));
   checkpoint_cost_ns_ = clock_.now_ns() - began_ns;
   thin();
-  return true;
 }
 
 /// Drops those that are missed least: between the nearest neighbours. The first stays.
@@ -95,15 +111,16 @@ void Timeline::thin() {
       least = 1;
       for (std::size_t i = 2; i + 1 < checkpoints_.size(); ++i) least = gap(i) < gap(least) ? i : least;
     }
-    bytes_ -= checkpoints_[least].snapshot.bytes();
+    bytes_ -= checkpoints_[least].bytes();
     checkpoints_.erase(checkpoints_.begin() + static_cast<std::ptrdiff_t>(least));
   }
 }
 
+/// From which one can go on to that step.
 const Timeline::Checkpoint* Timeline::nearest(std::int64_t step) const noexcept {
   const Checkpoint* found = nullptr;
   for (const Checkpoint& c : checkpoints_) {
-    if (c.step <= step) found = &c;
+    if (c.step <= step && (c.snapshot || &c == &checkpoints_.front())) found = &c;
   }
   return found;
 }
@@ -127,7 +144,7 @@ bool Timeline::after_step(hal::TimeNs cost_ns) {
   ++step_;
   step_cost_ns_ = step_cost_ns_ == 0 ? cost_ns : (7 * step_cost_ns_ + cost_ns) / 8;
   if (world_.tick() != tick_before_ + 1) {  // a hook went back, or began anew
-    begin_anew();
+    begin_anew(false);
     return is_new;
   }
   if (!is_new) {
@@ -152,7 +169,7 @@ hal::Status Timeline::apply_due() {
                         std::to_string(next.tick) + ": " + done.error().message};
     }
     ++applied_;
-    if (is_reset(next.action)) begin_anew();
+    if (is_reset(next.action)) begin_anew(world_.all_anew());
   }
   return {};
 }
@@ -160,13 +177,12 @@ hal::Status Timeline::apply_due() {
 /// Whether a tick that was computed again came out as before.
 void Timeline::compare() {
   if (warned_) return;
-  for (const Checkpoint& c : checkpoints_) {
-    if (c.step != step_ || c.fingerprint == world_.state_hash()) continue;
-    warned_ = true;
-    log_.warning("tick " + std::to_string(world_.tick()) +
-                 " came out different when it was computed again: a hook or a controller depends on something that "
-                 "going back does not put back (a hook's members that Hook::save leaves out, a file, a clock)");
-  }
+  const auto known = std::ranges::lower_bound(checkpoints_, step_, {}, &Checkpoint::step);
+  if (known == checkpoints_.end() || known->step != step_ || known->fingerprint == world_.state_hash()) return;
+  warned_ = true;
+  log_.warning("tick " + std::to_string(world_.tick()) +
+               " came out different when it was computed again: a hook or a controller depends on something that "
+               "going back does not put back (a hook's members that Hook::save leaves out, a file, a clock)");
 }
 
 // --- actions ---
@@ -189,7 +205,7 @@ void Timeline::drop_after(std::size_t touches, std::int64_t step) {
   touches_.resize(touches);
   told_ = std::min(told_, touches);
   while (!checkpoints_.empty() && checkpoints_.back().step > step) {
-    bytes_ -= checkpoints_.back().snapshot.bytes();
+    bytes_ -= checkpoints_.back().bytes();
     checkpoints_.pop_back();
   }
 }
@@ -209,7 +225,7 @@ hal::Result<Json> Timeline::act(Json action) {
   else
     touches_.push_back({step_, tick, std::move(action)});
   applied_ = touches_.size();
-  if (reset) begin_anew();
+  if (reset) begin_anew(world_.all_anew());
   return done;
 }
 
@@ -251,24 +267,37 @@ hal::Status Timeline::again() {
   return apply_due();
 }
 
+hal::Status Timeline::go_back_to(const Checkpoint& from) {
+  step_ = from.step;
+  applied_ = first_touch_;
+  while (applied_ < touches_.size() && touches_[applied_].step < step_) ++applied_;
+  if (from.snapshot) {
+    if (hal::Status back = world_.restore(Snapshot(*from.snapshot)); !back.ok()) return back;
+    return apply_due();
+  }
+  if (hal::Status begun = world_.reset(world_.seed(), &world_.scenario()); !begun.ok()) return begun;
+  for (RepeatedAction& reload : reloads_to(scripts_, world_)) {  // whose files are others by now
+    if (const hal::Result<Json> done = touch(world_, reload.action); !done.ok()) return done.error();
+  }
+  return apply_due();
+}
+
 hal::Status Timeline::way_to(std::int64_t step, bool from_checkpoint) {
   if (!no_way_back_.empty()) return hal::Error{"there is no way back: " + no_way_back_};
   const Checkpoint* const from = nearest(step);
   if (from == nullptr) return hal::Error{"there is no checkpoint before that tick"};
   world_.set_log({});  // it was said before
   hal::Status done;
-  if (from_checkpoint || step < step_ || from->step > step_) {
-    const std::int64_t start = from->step;
-    done = world_.restore(Snapshot(from->snapshot));
-    step_ = start;
-    applied_ = first_touch_;
-    while (applied_ < touches_.size() && touches_[applied_].step < step_) ++applied_;
-    if (done.ok()) done = apply_due();
-  }
-  const bool far = step - step_ > 4 * kNear;
+  if (from_checkpoint || step < step_ || (from->snapshot && from->step > step_)) done = go_back_to(*from);
+  const bool far = step - step_ > 4 * kNear && no_checkpoint_.empty();
+  hal::TimeNs said_ns = clock_.now_ns();
   while (done.ok() && step_ < step) {
     if (far && step - step_ == kNear && (applied_ == first_touch_ || touches_[applied_ - 1].step < step_)) keep();
     done = again();
+    if (!done.ok() || clock_.now_ns() - said_ns < kSaidEvery_ns) continue;
+    said_ns = clock_.now_ns();
+    log_.info("computing again: tick " + std::to_string(world_.tick()) + " of " + std::to_string(tick_of(step)));
+    if (on_way && !on_way()) done = hal::Error{"the way to tick " + std::to_string(tick_of(step)) + " was left"};
   }
   world_.set_log(log_);
   return done;
@@ -300,8 +329,7 @@ hal::Status Timeline::look_back(hal::Tick from, hal::Tick to, const std::functio
     return hal::Error{"ticks " + std::to_string(from) + " to " + std::to_string(to) + " cannot be had: there are " +
                       std::to_string(first_tick()) + " to " + std::to_string(latest_tick())};
   }
-  hal::Result<Snapshot> now = world_.snapshot_of_all();
-  if (!now.ok()) return now.error();
+  const hal::Result<Snapshot> now = no_checkpoint_.empty() ? take() : hal::Error{no_checkpoint_};
   const std::int64_t step = step_;
   const std::size_t applied = applied_;
   hal::Status done = way_to(step_of(from), true);
@@ -312,9 +340,11 @@ hal::Status Timeline::look_back(hal::Tick from, hal::Tick to, const std::functio
     done = again();
   }
   world_.set_log(log_);
-  const hal::Status here = world_.restore(now.value());
-  step_ = step;
-  applied_ = applied;
+  const hal::Status here = now.ok() ? world_.restore(now.value()) : way_to(step, true);
+  if (now.ok()) {
+    step_ = step;
+    applied_ = applied;
+  }
   return done.ok() ? here : done;
 }
 

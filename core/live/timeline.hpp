@@ -7,12 +7,17 @@
 //             come at their steps, and nothing of it is recorded twice. Whoever touches at 9 makes it another run: what
 //             was after 9 is dropped.
 //
+// Where no checkpoint can be kept (a controller that cannot be copied, no memory for one), the first stands for the
+// start of the run: it is begun anew and computed again from there, and the fingerprints of later ones say whether it
+// is the same.
+//
 // Steps are counted from the start of the run. They are its ticks, until a hook goes back to a checkpoint of its own,
 // or anybody resets the run: ticks fall then, steps do not, and the way back ends there.
 #pragma once
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,9 +39,11 @@ class Timeline {
   void start();
   /// Why one cannot go back; empty: one can.
   const std::string& no_way_back() const noexcept { return no_way_back_; }
+  /// Why going back may compute all again; empty: it need not.
+  const std::string& no_checkpoint() const noexcept { return no_checkpoint_; }
 
   hal::Tick first_tick() const noexcept { return checkpoints_.empty() ? world_.tick() : base_tick_; }
-  hal::Tick latest_tick() const noexcept { return base_tick_ + (latest_ - first_step_); }
+  hal::Tick latest_tick() const noexcept { return tick_of(latest_); }
   /// Whether the next step was done before.
   bool known() const noexcept { return step_ < latest_; }
 
@@ -59,12 +66,19 @@ class Timeline {
   hal::Status look_back(hal::Tick from, hal::Tick to, const std::function<void(hal::Tick)>& look);
   /// How many ticks are computed again to get from the nearest checkpoint to that tick.
   hal::Tick ticks_to(hal::Tick tick) const noexcept;
+  /// How many by `look_back`.
+  hal::Tick ticks_of_look(hal::Tick from, hal::Tick to) const noexcept {
+    return ticks_to(from) + to - from + (no_checkpoint_.empty() ? 0 : ticks_to(world_.tick()));
+  }
   /// What a tick costs, of late.
   hal::TimeNs step_cost_ns() const noexcept { return step_cost_ns_; }
 
   /// Tells what happened since the last call and is not told yet. `before_step` does so before a new step.
   void tell();
   std::function<void(hal::Tick tick, const hal::Json& event)> on_event;
+  /// Called every two seconds while one waits for ticks that are computed again. False: they are not to be; the run
+  /// stays where it is.
+  std::function<bool()> on_way;
 
   std::size_t checkpoints() const noexcept { return checkpoints_.size(); }
   std::size_t bytes() const noexcept { return bytes_; }
@@ -78,12 +92,15 @@ class Timeline {
   struct Checkpoint {
     std::int64_t step = 0;
     std::uint64_t fingerprint = 0;
-    Snapshot snapshot;
+    std::optional<Snapshot> snapshot;  // none: it is computed again, and compared
+    std::size_t bytes() const noexcept { return snapshot ? snapshot->bytes() : 0; }
   };
 
-  bool keep();
+  hal::Result<Snapshot> take() const;
+  void keep();
   void thin();
-  void begin_anew();
+  void begin_anew(bool from_start);
+  hal::Status go_back_to(const Checkpoint& from);
   void drop_after(std::size_t touches, std::int64_t step);
   hal::Result<hal::Json> perform(hal::Json& action);
   hal::Status apply_due();
@@ -92,19 +109,22 @@ class Timeline {
   void compare();
   const Checkpoint* nearest(std::int64_t step) const noexcept;
   std::int64_t step_of(hal::Tick tick) const noexcept { return first_step_ + (tick - base_tick_); }
+  hal::Tick tick_of(std::int64_t step) const noexcept { return base_tick_ + (step - first_step_); }
 
   World& world_;
   LiveClock& clock_;
   bool wanted_;
   std::size_t memory_bytes_;
   hal::Log log_;
-  std::string no_way_back_;
+  std::string no_way_back_, no_checkpoint_;
 
   std::int64_t step_ = 0, latest_ = 0;  // where the run is, and where it has been
   std::int64_t first_step_ = 0;         // from where on ticks and steps go side by side
   hal::Tick base_tick_ = 0;             // of that step
   hal::Tick tick_before_ = 0;
   std::vector<Checkpoint> checkpoints_;  // by step
+  bool from_start_ = false;              // the first of them: nothing happened before it, and a reset comes there
+  hal::Json scripts_;                    // that controllers ran there
   std::size_t bytes_ = 0;
   hal::TimeNs checkpoint_cost_ns_ = 0, since_checkpoint_ns_ = 0, step_cost_ns_ = 0;
 

@@ -283,6 +283,7 @@ std::vector<std::string> fixed_differences(const Scenario& before, const Scenari
 // --- the world ---
 
 hal::Status World::can_reset(const Scenario& changed) const {
+  if (hal::Status can = impl_->can_begin_anew(); !can.ok()) return can;
   const Scenario &now = impl_->scenario, next = impl_->completed(changed);
   std::vector<std::string> fixed = fixed_differences(now, next, true);
   if (!same_fits(now, next)) fixed.emplace_back("fitted");
@@ -449,8 +450,8 @@ hal::Status RobotFactory::change_group(std::size_t g, const Scenario& before, co
 /// The controllers of a group, with its parameters of now. Those of robots with parameters of their own stay.
 hal::Status RobotFactory::make_anew(std::size_t g, const KeepMemory& keep) {
   for (const std::size_t b : stores_.groups[g].blocks) {
-    for (std::uint32_t slot = 0; slot < stores_.blocks[b].used; ++slot) {
     const std::function<hal::Status()> give_back = keep(b);
+    for (std::uint32_t slot = 0; slot < stores_.blocks[b].used; ++slot) {
       RobotBlock& block = stores_.blocks[b];
       if (block.constructed[slot] == 0 || (slot < block.params.size() && block.params[slot] != nullptr)) continue;
       block.constructed[slot] = 0;
@@ -462,9 +463,9 @@ hal::Status RobotFactory::make_anew(std::size_t g, const KeepMemory& keep) {
       const std::string why = construct({static_cast<std::uint32_t>(b), slot}, stores_.groups[g].params);
       if (!why.empty()) return hal::Error{why};
     }
-  }
     if (!give_back) continue;
     if (hal::Status given = give_back(); !given.ok()) return given;
+  }
   return {};
 }
 

@@ -73,6 +73,7 @@ RobotFactory::~RobotFactory() {
 void RobotFactory::begin_anew(std::uint64_t seed, bool changed) {
   end_kept();
   new_settings_ = changed;
+  any_reset_ = false;
   seed_ = seed;
   kept_ = start_blocks_;
   for (RobotBlock& block : kept_) block.constructed.fill(0);
@@ -348,7 +349,10 @@ std::string RobotFactory::construct(Slot at, const std::shared_ptr<const void>& 
   const hal::PluginCall call(&name_constructor, this, at.block, at.slot);
   try {
     if (block.constructed[at.slot] != 0) {  // of the run before
-      if (!new_settings_ && type.reset(block.controller(at.slot), robot)) return {};
+      if (!new_settings_ && type.reset(block.controller(at.slot), robot)) {
+        any_reset_ = true;
+        return {};
+      }
       block.constructed[at.slot] = 0;
       type.destroy(block.controller(at.slot));
     }

@@ -65,6 +65,8 @@ class RobotFactory {
   /// `changed`: the scenario is another than that `make` had, in what World::reset takes over; controllers are
   /// constructed again.
   void begin_anew(std::uint64_t seed, bool changed);
+  /// Whether a controller was reset since then, and may remember the run before.
+  bool any_reset() const noexcept { return any_reset_; }
 
   /// What is wrong with the parameters of controllers in another scenario of the same robots.
   void check_params(const Scenario& changed, Problems& problems) const;
@@ -75,12 +77,12 @@ class RobotFactory {
   hal::Result<RobotId> add(const RobotItem& item, const Pose& pose,
                            const std::function<hal::Status(std::size_t row)>& accepts);
 
-  /// The scenario has changed from `before` while the run goes on, in what World::continue_with takes over: does that
-  /// for all robots. Error: a controller that cannot be made; some are changed then and others not.
   /// Takes what the controllers of a block remember. @returns what gives it to those that are made in their place;
   /// empty: they begin anew.
   using KeepMemory = std::function<std::function<hal::Status()>(std::size_t block)>;
 
+  /// The scenario has changed from `before` while the run goes on, in what World::continue_with takes over: does that
+  /// for all robots. Error: a controller that cannot be made; some are changed then and others not.
   hal::Status go_on_from(const Scenario& before, const KeepMemory& keep);
 
   /// "controller 'c' (library 'x') of robot 'ep3'": who has this slot of a block. For hal::PluginCall.
@@ -139,9 +141,10 @@ class RobotFactory {
   std::vector<RobotBlock> start_blocks_;
   std::vector<std::pair<ColumnArrays*, std::vector<std::byte*>>> start_columns_;
   std::size_t start_robots_ = 0;
-  std::vector<RobotBlock> kept_;                            // start_blocks_ with their controllers, to be filled again
-  std::size_t filled_ = 0;                                  // how many of them are
-  bool new_settings_ = false;                               // controllers are not to be reset
+  std::vector<RobotBlock> kept_;  // start_blocks_ with their controllers, to be filled again
+  std::size_t filled_ = 0;        // how many of them are
+  bool new_settings_ = false;     // controllers are not to be reset
+  bool any_reset_ = false;
   std::vector<std::shared_ptr<const void>> former_params_;  // controllers may know theirs
   Slab* slab_ = nullptr;                                    // where blocks get their memory; null: each on its own
   std::size_t start_rows_ = 0;                              // of the group that is being made at the start

@@ -106,6 +106,8 @@ class World {
   hal::Status reset(std::uint64_t seed, const Scenario* changed = nullptr);
   /// Whether it can. Errors, with lines: what is wrong with parameters; what differs and needs another world.
   hal::Status can_reset(const Scenario& changed) const;
+  /// Whether all controllers and hooks were made anew at the run's start: none was reset, and remembers something.
+  bool all_anew() const noexcept;
 
   /// Goes on with the settings of `changed`, which otherwise is the scenario that the world was made of, from the next
   /// step on. Bodies, mechanisms, chance and time stay, and so does all that nothing says otherwise of. Robots that

@@ -150,6 +150,7 @@ struct World::Impl final : hal::RobotLog::Sink {
   Measures measures;
   const char* hook_phase = "";                          // that is or was called last
   bool new_settings = false;                            // no reset has made controllers and hooks of them yet
+  bool hooks_reset = false;                             // by the last reset: one may remember the run before
   std::vector<std::unique_ptr<const Scenario>> former;  // that the run went on from: controllers may know their kinds
   ExternalRobots* external = nullptr;
   std::vector<RobotId> elsewhere;  // robots whose controllers step there
@@ -191,9 +192,9 @@ struct World::Impl final : hal::RobotLog::Sink {
   using FieldChanges = std::vector<std::pair<Field*, std::shared_ptr<const void>>>;
   hal::Result<FieldChanges> other_fields(const Scenario& next) const;
   hal::Status remember_block(hal::Archive& archive, std::size_t block, const Addresses& addresses);
-  hal::Status remember_own(hal::Archive& archive, std::size_t block);
   hal::Status remember_controllers(hal::Archive& archive, std::size_t block, const Addresses& addresses);
   std::function<hal::Status()> keep_memory(std::size_t block);
+  hal::Status remember_own(hal::Archive& archive, std::size_t block);
   hal::Status remember_changed(hal::Archive& archive, std::size_t block, const Addresses& addresses);
   hal::Status remember_engines(hal::Archive& archive);
   void remember_accuracy(hal::Archive& archive);
@@ -203,6 +204,7 @@ struct World::Impl final : hal::RobotLog::Sink {
   void populate(Problems& problems);
   std::unique_ptr<Field> make_field(const FieldType& type, const Scenario& from, Problems& problems) const;
   void make_hooks(Problems& problems);
+  hal::Status can_begin_anew() const;
   void reset_hooks(Problems& problems);
   void make_hook(std::size_t hook, Problems& problems);
   Scenario completed(const Scenario& changed) const;

@@ -423,8 +423,7 @@ void World::Impl::size_ledgers() {
 
 hal::Status World::reset(std::uint64_t seed, const Scenario* changed) {
   Impl& w = *impl_;
-  if (w.external != nullptr) return hal::Error{"no reset: real robots or peers take part, which cannot be put back"};
-  if (!w.former.empty()) return hal::Error{"no reset: the run went on with other settings; make another world"};
+  if (const hal::Status can = w.can_begin_anew(); !can.ok()) return can;
   std::optional<Scenario> before;  // until its controllers have ended
   if (changed != nullptr) {
     if (const hal::Status can = can_reset(*changed); !can.ok()) return can;
@@ -475,8 +474,19 @@ hal::Status World::reset(std::uint64_t seed, const Scenario* changed) {
   return w.state == RunState::Failed ? hal::Status(hal::Error{w.failure}) : hal::Status{};
 }
 
+hal::Status World::Impl::can_begin_anew() const {
+  if (external != nullptr) return hal::Error{"no reset: real robots or peers take part, which cannot be put back"};
+  if (!former.empty()) return hal::Error{"no reset: the run went on with other settings; make another world"};
+  return {};
+}
+
+bool World::all_anew() const noexcept {
+  return !impl_->hooks_reset && !impl_->factory->any_reset();
+}
+
 void World::Impl::reset_hooks(Problems& problems) {
   const bool make_anew = std::exchange(new_settings, false);
+  hooks_reset = false;
   for (std::size_t i = 0; i < hooks.size(); ++i) {
     bool at_start = false;
     const std::string why = asked(i, "reset", [&](Hook& hook) { at_start = !make_anew && hook.reset(seed); });
@@ -484,6 +494,7 @@ void World::Impl::reset_hooks(Problems& problems) {
       problems.push_back({scenario.file, scenario.hooks[i].line, why, false});
     else if (!at_start)
       make_hook(i, problems);
+    hooks_reset = hooks_reset || at_start;
   }
 }
 

@@ -244,19 +244,78 @@ TEST(Timeline, SaysWhenTicksComeOutDifferent) {
   EXPECT_THAT(messages.back(), HasSubstr("came out different when it was computed again: a hook"));
 }
 
-TEST(Timeline, SaysWhyThereIsNoWayBack) {
-  Held owner(crowd("kinematics2d", "owner", 3));
-  EXPECT_THAT(owner.live().state().no_way_back, HasSubstr("cannot be copied"));
-  owner.walk(5);
-  EXPECT_THAT(owner.error_of({{"do", "go_to"}, {"tick", 2}}),
-              HasSubstr("there is no way back: no snapshot: the contr"));
-  EXPECT_THAT(owner.error_of({{"do", "undo"}}), HasSubstr("cannot be copied"));
-  EXPECT_EQ(owner.error_of({{"do", "halt"}, {"robot", "*"}}), "");
+/// Paused; what the timeline says is kept.
+LiveOptions heard(std::vector<std::string>& messages) {
+  LiveOptions options = Held::paused();
+  options.log = hal::Log([&](hal::Severity, std::string_view text) { messages.emplace_back(text); });
+  return options;
+}
 
-  LiveOptions little = Held::paused();
+TEST_P(Timelines, ComputeTheRunAgainFromItsStartWhereControllersCannotBeCopied) {
+  WorldOptions threads;
+  threads.threads = std::get<1>(GetParam());
+  std::vector<std::string> messages;
+  Held run(crowd(std::get<0>(GetParam()), "owner", 20), heard(messages), threads);
+  EXPECT_EQ(run.live().state().no_way_back, "");
+  run.walk(10);
+  ASSERT_EQ(run.error_of(move_to("ep3", 1.4, 1.4)), "");
+  run.walk(20);
+  const auto straight = run.new_ticks;
+  for (const hal::Tick tick : {17, 5, 29, 0, 30}) EXPECT_EQ(run.hash_at(tick), straight.at(tick)) << tick;
+  const Json x = run.ask({{"do", "history"}, {"robot", "ep3"}, {"role", "pose"}, {"field", "x"}, {"from", 9}});
+  EXPECT_EQ(x["ticks"].size(), 22U) << hal::to_text(x);
+  EXPECT_EQ(run.hash(), straight.at(30));
+  EXPECT_EQ(run.ask({{"do", "undo"}})["tick"], 10);
+  run.walk(20);
+  EXPECT_NE(run.hash(), straight.at(30)) << "nothing moved the robot";
+  run.end();
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_THAT(messages[0], HasSubstr("computes the run again from tick 0: no snapshot: the controller 'owner' of rob"));
+}
+
+TEST(Timeline, GoesOnFromItsLastCheckpointsWhereControllersCanBeCopiedNoMore) {
+  std::vector<std::string> messages;
+  Held run(crowd("kinematics2d", "reluctant", 3), heard(messages));
+  run.walk(30);
+  const auto straight = run.new_ticks;
+  for (const hal::Tick tick : {1, 20, 30, 3}) EXPECT_EQ(run.hash_at(tick), straight.at(tick)) << tick;
+  run.end();
+  ASSERT_FALSE(messages.empty());
+  EXPECT_THAT(messages[0], HasSubstr("computes the run again from tick 2: no snapshot: copying the controller of"));
+}
+
+TEST(Timeline, NeedsNoMemoryToComputeARunAgain) {
+  std::vector<std::string> messages;
+  LiveOptions little = heard(messages);
   little.memory_bytes = 1000;
-  Held small(crowd(), little);
-  EXPECT_THAT(small.live().state().no_way_back, HasSubstr("more than the 1 MB that may be kept"));
+  Held run(crowd(), little);
+  run.walk(20);
+  const auto straight = run.new_ticks;
+  EXPECT_EQ(run.hash_at(7), straight.at(7));
+  run.end();
+  EXPECT_THAT(messages.at(0), HasSubstr("more than the 1 MB that may be kept; allow more (--view-memory)"));
+}
+
+TEST(Timeline, ARunThatWasBegunAnewHasAWayBackUnlessAHookRemembersTheOneBefore) {
+  for (const bool remembers : {false, true}) {
+    Scene scene = crowd("kinematics2d", "shown", 3);
+    with_hook(scene, "teacher", {{"keeps", remembers ? "true" : "false", 9}});
+    LiveOptions little = Held::paused();
+    little.memory_bytes = 1000;
+    Held run(scene, little);
+    run.walk(5);
+    ASSERT_EQ(run.error_of({{"do", "reset"}}), "");
+    run.new_ticks.clear();
+    run.walk(5);
+    if (!remembers) {
+      EXPECT_EQ(run.hash_at(2), run.new_ticks.at(2));
+      continue;
+    }
+    EXPECT_THAT(run.live().state().no_way_back, HasSubstr("more than the 1 MB that may be kept"));
+    EXPECT_THAT(run.error_of({{"do", "go_to"}, {"tick", 2}}), HasSubstr("there is no way back: a checkpoint of this"));
+    EXPECT_THAT(run.error_of({{"do", "undo"}}), HasSubstr("more than the 1 MB"));
+    EXPECT_EQ(run.error_of({{"do", "halt"}, {"robot", "*"}}), "");
+  }
 }
 
 /// Steps a world, and lets each tick seem to cost what the test says.
@@ -290,6 +349,33 @@ TEST(Timeline, KeepsItsMemoryAndReachesEveryTick) {
     ASSERT_TRUE(timeline.go_to(tick).ok());
     EXPECT_EQ(world.state_hash(), hashes.at(tick)) << tick;
   }
+}
+
+/// A second passes whenever somebody looks.
+class SlowClock final : public LiveClock {
+ public:
+  hal::TimeNs now_ns() noexcept override { return now_ns_ += hal::kNsPerSecond; }
+
+ private:
+  hal::TimeNs now_ns_ = 0;
+};
+
+TEST(Timeline, SaysHowFarALongWayIsAndLeavesItWhenAsked) {
+  auto made = make(crowd("kinematics2d", "owner", 3));
+  World& world = *made.world;
+  SlowClock clock;
+  std::vector<std::string> messages;
+  world.start();
+  Timeline timeline(world, clock, heard(messages));
+  timeline.start();
+  step(world, timeline, 20, 1);
+  int asked = 0;
+  timeline.on_way = [&] { return ++asked < 3; };
+  EXPECT_THAT(timeline.go_to(15).error().message, HasSubstr("the way to tick 15 was left"));
+  EXPECT_EQ(asked, 3);
+  EXPECT_LT(world.tick(), 15);
+  EXPECT_THAT(messages.back(), HasSubstr("computing again: tick " + std::to_string(world.tick()) + " of 15"));
+  EXPECT_TRUE(timeline.known());
 }
 
 TEST(Timeline, LooksBackAndIsWhereItWas) {
