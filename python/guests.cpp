@@ -99,7 +99,7 @@ class GuestRobot {
     for (const hal::ListedDevice& device : list().devices()) {
       if (device.port->role != role) continue;
       if (device.port->name == name || device.written == name) {
-        auto made = std::make_shared<Port>(session_, list().port(*device.port), *device.port);
+        auto made = std::make_shared<Port>(session_, list().port(*device.port), *device.port, robot_->kind());
         ports.push_back(made);
         return made;
       }
@@ -310,8 +310,10 @@ class PythonHook final : public core::Hook {
         core::HookContext* outer;
         ~Back() { session.hook_context = outer; }
       } const back{*session, outer};
+      session->read_arrays();
       const py::object answer =
           object_.get().attr(kMethods[method])(py::cast(session->owner, py::return_value_policy::reference));
+      session->write_arrays();
       const int truth = PyObject_IsTrue(answer.ptr());
       if (truth < 0) throw py::error_already_set();
       return truth == 1;
@@ -382,7 +384,7 @@ py::object Port::array(const std::shared_ptr<Session>& session, const hal::Field
   const py::str name{std::string(field.name)};
   if (arrays_.contains(name)) return arrays_[name];
   const bool writable = type_->role == hal::Role::Actuator;
-  py::object made = array_of(session, *type_, field, static_cast<std::byte*>(memory_), 0, writable);
+  py::object made = array_of(session, field, static_cast<std::byte*>(memory_), length_.scalars(field), writable);
   arrays_[name] = made;
   return made;
 }

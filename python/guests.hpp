@@ -6,6 +6,7 @@
 #include <string>
 
 #include "hal/catalog.hpp"
+#include "python/arrays.hpp"
 #include "python/session.hpp"
 
 namespace tandem::python {
@@ -28,8 +29,8 @@ void forget_guests(Session& session);
 /// writes. Keeps nothing alive: once its world is gone, using it is an error.
 class Port {
  public:
-  Port(std::weak_ptr<Session> session, void* memory, const hal::PortType& type)
-      : session_(std::move(session)), memory_(memory), type_(&type) {}
+  Port(std::weak_ptr<Session> session, void* memory, const hal::PortType& type, const hal::RobotKind& kind)
+      : session_(std::move(session)), memory_(memory), type_(&type), length_(type, kind) {}
 
   py::object get(const std::string& name);
   void set(const std::string& name, const py::object& value);
@@ -43,6 +44,7 @@ class Port {
   std::weak_ptr<Session> session_;
   void* memory_;
   const hal::PortType* type_;
+  DeviceLength length_;
   py::dict arrays_;  // by field, once asked for
 };
 

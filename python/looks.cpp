@@ -81,15 +81,29 @@ void set_pose(core::World& world, const std::string& robot, double x_m, double y
   world.space().set_pose(id, pose);
 }
 
-void add_robot(core::World& world, const std::string& id, const std::string& controller, double x_m, double y_m,
-               double heading_rad, const std::string& kind) {
+/// `change` of the robots: with commands that Python wrote, and seen by its arrays.
+template <class Change>
+void change_robots(const std::shared_ptr<Session>& session, Change&& change) {
+  session->write_arrays();
+  change(*session->world);
+  session->read_arrays();
+}
+
+void add_robot(const std::shared_ptr<Session>& session, const std::string& id, const std::string& controller,
+               double x_m, double y_m, double heading_rad, const std::string& kind) {
   core::NewRobot wanted;
   wanted.kind = kind;
   wanted.id = id;
   wanted.controller = controller;
   place(wanted.pose, x_m, y_m, heading_rad);
-  const auto added = world.space().add_robot(wanted);
-  if (!added.ok()) throw py::value_error(added.error().message);
+  change_robots(session, [&](core::World& world) {
+    const auto added = world.space().add_robot(wanted);
+    if (!added.ok()) throw py::value_error(added.error().message);
+  });
+}
+
+void remove_robot(const std::shared_ptr<Session>& session, const std::string& id) {
+  change_robots(session, [&](core::World& world) { world.space().remove_robot(robot_of(world, id)); });
 }
 
 void move_object(core::World& world, const std::string& object, double x_m, double y_m, double heading_rad) {
@@ -131,7 +145,9 @@ py::dict incidents(core::World& world) {
   return made;
 }
 
-Picture picture(core::World& world, int size_px, bool ids, bool axes) {
+Picture picture(const std::shared_ptr<Session>& session, int size_px, bool ids, bool axes) {
+  session->write_arrays();  // lamps
+  const core::World& world = *session->world;
   core::PictureOptions options;
   options.experiment = world.scenario().name;
   options.seed = world.seed();
@@ -169,8 +185,7 @@ void bind_looks(WorldClass& world) {
       .def("add_robot", look(&add_robot), py::arg("id"), py::arg("controller"), py::arg("x"), py::arg("y"),
            py::arg("heading") = 0.0, py::arg("kind") = "",
            "Adds a robot under a configuration of the file. kind: where absent, that of the first robot there.")
-      .def("remove_robot", look(+[](W& w, const std::string& id) { w.space().remove_robot(robot_of(w, id)); }),
-           py::arg("robot"), "Takes a robot out; its row stays, not alive.")
+      .def("remove_robot", look(&remove_robot), py::arg("robot"), "Takes a robot out; its row stays, not alive.")
       .def("move_object", look(&move_object), py::arg("object"), py::arg("x"), py::arg("y"), py::arg("heading") = 0.0,
            "Puts a box or a cylinder somewhere else.")
       .def_property_readonly("objects", look(&objects), "(x, y, heading) of every box and cylinder, by id.")
@@ -184,7 +199,10 @@ void bind_looks(WorldClass& world) {
       .def_property_readonly("time", look(+seconds), "Time of the run in s.")
       .def_property_readonly("ticks_per_second", look(+[](W& w) { return w.ticks_per_second(); }))
       .def_property_readonly("seed", look(+[](W& w) { return w.seed(); }))
-      .def_property_readonly("fingerprint", look(+[](W& w) { return w.state_hash(); }),
+      .def_property_readonly("fingerprint", look(+[](const std::shared_ptr<Session>& s) {
+                               s->write_arrays();
+                               return s->world->state_hash();
+                             }),
                              "A number that is equal for equal states.")
       .def_property_readonly("settings", look(+[](W& w) { return core::effective_settings(w.scenario()); }),
                              "The experiment as XML, with every default written out.")

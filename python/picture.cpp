@@ -1,5 +1,8 @@
 #include "python/picture.hpp"
 
+#include <cstdint>
+#include <cstring>
+
 #include "hal/output_file.hpp"
 
 namespace tandem::python {
@@ -14,6 +17,21 @@ py::bytes Picture::png() const {
   const auto made = rendered(core::PictureFormat::Png);
   if (!made.ok()) throw std::runtime_error(made.error().message);
   return {made.value()};
+}
+
+py::array Picture::pixels() const {
+  const auto made = rendered(core::PictureFormat::Pixels);
+  if (!made.ok()) throw std::runtime_error(made.error().message);
+  std::uint32_t size[2];
+  std::memcpy(size, made.value().data(), sizeof size);
+  const std::size_t width = size[0], height = size[1];
+  py::array_t<std::uint8_t> pixels({height, width, std::size_t{3}});
+  std::uint8_t* to = pixels.mutable_data();
+  const char* from = made.value().data() + sizeof size;
+  for (std::size_t i = 0; i < width * height; ++i, from += 4, to += 3) {
+    for (std::size_t color = 0; color < 3; ++color) to[color] = static_cast<std::uint8_t>(from[2 - color]);
+  }
+  return pixels;
 }
 
 py::object Picture::shown_png() const {
@@ -45,6 +63,8 @@ void bind_picture(py::module_& m) {
       .def("_repr_svg_", [](const Picture& p) { return p.svg; })
       .def("_repr_png_", &Picture::shown_png)
       .def("png", &Picture::png, "The picture as the bytes of a PNG file.")
+      .def("pixels", &Picture::pixels,
+           "The picture as an array: (height, width, 3), red, green and blue from 0 to 255.")
       .def("save", &Picture::save, py::arg("path"), "Writes a file: .svg, .png or .pdf.");
 }
 

@@ -1,5 +1,6 @@
 // Pictures in Python, of whatever is seen as a space.
 #pragma once
+#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <string>
 
@@ -13,6 +14,8 @@ struct Picture {
   std::string svg;
 
   pybind11::bytes png() const;
+  /// (height, width, 3): red, green, blue.
+  pybind11::array pixels() const;
   /// As notebooks ask for it; None where it cannot be made: they have the SVG.
   pybind11::object shown_png() const;
   void save(const std::string& path) const;

@@ -16,9 +16,10 @@
 namespace tandem::python {
 
 class World;
+class PortArrays;
+struct SwarmRows;
 
-/// Every array handed out holds its session, so that no memory goes while it is in use. Destroyed with Python's
-/// lock held.
+/// The world with what Python has taken of it. Destroyed with Python's lock held.
 struct Session {
   explicit Session(std::vector<std::filesystem::path> folders, hal::Catalog catalog)
       : loader(std::move(folders), std::move(catalog)) {}
@@ -35,6 +36,15 @@ struct Session {
   /// The references that it holds to guests and hooks, one each, so that Python's collector finds a hook that keeps its
   /// world. With Python's lock.
   std::vector<PyObject*> held;
+
+  /// Rows of the swarms, and the arrays of ports over them that were asked for, by the swarm's first block.
+  std::map<std::size_t, std::shared_ptr<SwarmRows>> rows;
+  std::map<std::pair<std::size_t, const hal::PortType*>, std::shared_ptr<PortArrays>> arrays;
+  std::mutex arrays_lock;  ///< `arrays` and their fields: they are made with Python's lock, and copied without
+  /// Copies the world's memory into those arrays: after ticks, and before something of Python is called within one.
+  void read_arrays() noexcept;
+  /// Copies commands that Python wrote into the world's memory: before ticks, and before anything looks at them.
+  void write_arrays() noexcept;
 
   /// Messages of the world; may be called from any thread.
   void note(hal::Severity severity, std::string_view text);

@@ -246,9 +246,11 @@ bool World::tick_unlocked() {
   return session_->run->tick() && world.state() == core::RunState::Running;
 }
 
-void World::step_unlocked() noexcept {
+void World::step_unlocked(std::int64_t ticks) noexcept {
   user_ = std::this_thread::get_id();
-  tick_unlocked();
+  session_->write_arrays();
+  for (std::int64_t t = 0; t < ticks; ++t) tick_unlocked();
+  session_->read_arrays();
 }
 
 void World::call_policies() {
@@ -273,10 +275,12 @@ std::int64_t World::step(std::int64_t ticks) {
   while (goes_on && done < ticks) {
     {
       const py::gil_scoped_release unlocked;
+      session_->write_arrays();
       do {
         goes_on = tick_unlocked();
         ++done;
       } while (goes_on && done < ticks && policies_.empty() && !interrupts.due());
+      session_->read_arrays();
     }
     call_policies();
     Interrupts::look();
@@ -356,6 +360,8 @@ void World::reset(std::optional<std::uint64_t> seed, const std::optional<std::ve
     const py::gil_scoped_release unlocked;
     begun = world.reset(seed.value_or(world.seed()), changed ? &*changed : nullptr);
   }
+  Swarm::renew(session_, true);
+  session_->read_arrays();
   open_run(record);
   if (!begun.ok()) throw RunFailed(begun.error().message);
   finished_ = !session_->run->join();
@@ -369,6 +375,7 @@ std::shared_ptr<Snapshot> World::snapshot() {
   const Use use(*this, Use::How::Alone);
   hal::Result<core::Snapshot> taken = [&] {
     const py::gil_scoped_release unlocked;
+    session_->write_arrays();
     return session_->world->snapshot_of_all();
   }();
   if (!taken.ok()) throw std::runtime_error(taken.error().message);
@@ -383,6 +390,8 @@ void World::restore(const Snapshot& snapshot) {
     back = session_->world->restore(snapshot.moment);
   }
   if (!back.ok()) throw std::runtime_error(back.error().message);
+  Swarm::renew(session_, false);
+  session_->read_arrays();
   const hal::Tick tick = session_->world->tick();
   if (finished_) {  // its run is over, and this is another
     open_run({});
@@ -450,9 +459,7 @@ class Group {
       {
         const py::gil_scoped_release unlocked;
         pool_.run(worlds_.size(), 1, [&](std::size_t begin, std::size_t end) {
-          for (std::size_t i = begin; i < end; ++i) {
-            for (std::int64_t t = 0; t < now; ++t) worlds_[i]->step_unlocked();
-          }
+          for (std::size_t i = begin; i < end; ++i) worlds_[i]->step_unlocked(now);
         });
       }
       for (const auto& world : worlds_) world->user_ = std::this_thread::get_id();

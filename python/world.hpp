@@ -77,7 +77,7 @@ class World {
   void collect() noexcept;
 
   /// For groups: steps without Python's lock, on a thread that the group says.
-  void step_unlocked() noexcept;
+  void step_unlocked(std::int64_t ticks) noexcept;
   void add_policy(const std::string& controller, py::object policy);
   bool has_policies() const noexcept { return !policies_.empty(); }
   void call_policies();

@@ -51,7 +51,7 @@ def arrays(configs, robots, ticks):
             left[:] = wanted_left
             right[:] = wanted_right
             world.step()
-            read[:] = proximity.distance[:, :8]
+            read[:] = proximity.distance
 
     kinds = {"tick": tick_alone, "array_step": array_step, "array_step_copied": copying_step}
     world.step(_CHUNK)

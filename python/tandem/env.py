@@ -68,6 +68,15 @@ def _bounds(inputs):
     return np.array(low, dtype=np.float32), np.array(high, dtype=np.float32)
 
 
+_RENDERED = {"svg": lambda picture: picture.svg, "rgb_array": lambda picture: picture.pixels()}
+
+
+def _render_mode(mode):
+    if mode not in _RENDERED:
+        raise ValueError(f"there is no render_mode {mode!r}; there are {', '.join(map(repr, _RENDERED))}")
+    return mode
+
+
 def _checked(actions, shape):
     """Actions as numbers; clear errors for what is none."""
     try:
@@ -80,7 +89,7 @@ def _checked(actions, shape):
 
 
 class _Arena:
-    """One world of an environment: its robots in the order of the file."""
+    """One world of an environment."""
 
     def __init__(self, experiment, observe, act, controller, world):
         world.setdefault("driven", [controller] if controller else True)
@@ -91,24 +100,19 @@ class _Arena:
             raise ValueError("an environment is about robots of one kind under one controller; say which: "
                              + ", ".join(repr(one.controller) for one in self.world.swarms))
         self.swarm = driven[0]
-        self.order = self.swarm.order
         self.robots = len(self.swarm)
-        self._read = np.empty((self.robots, self.inputs.size))
-        self._written = np.zeros((self.robots, self.outputs.size))
 
     def reset(self, seed, parameters=None):
         """Begins anew; one tick in which nothing moves fills the sensors."""
         self.world.reset(seed, parameters)
-        self.order = self.swarm.order
         self.world.step()
 
     def read(self):
-        """Observations (robots, values) in the order of the file."""
-        return self.inputs.read(self.swarm, self._read)[self.order]
+        """Observations (robots, values)."""
+        return self.inputs.read(self.swarm)
 
     def act(self, actions):
-        self._written[self.order] = actions
-        self.outputs.write(self.swarm, self._written)
+        self.outputs.write(self.swarm, actions)
 
 
 class VectorEnv(_VectorBase):
@@ -121,6 +125,7 @@ class VectorEnv(_VectorBase):
     ticks          simulation ticks a step
     controller     id of the configuration that is driven, where there are several
     threads        for stepping the worlds side by side; None: one a core
+    render_mode    what render() gives of each world: "svg", a text; "rgb_array", an array (height, width, 3)
     world          further arguments of tandem.World
 
     Observations have the shape (num_envs, robots, values), actions (num_envs, robots, outputs); robots are in the order
@@ -128,13 +133,14 @@ class VectorEnv(_VectorBase):
     NEXT_STEP does: the action is not used then, and its reward is 0.
     """
 
-    metadata = {"render_modes": ["svg"], "autoreset_mode": _NEXT_STEP}
-    render_mode, spec, closed = "svg", None, False
+    metadata = {"render_modes": list(_RENDERED), "autoreset_mode": _NEXT_STEP}
+    spec, closed = None, False
 
     def __init__(self, experiment, num_envs, *, observe, act, reward, terminated=None, episode=60.0, ticks=1, controller=None,
-                 threads=None, **world):
+                 threads=None, render_mode="svg", **world):
         if num_envs < 1:
             raise ValueError("a vector environment has at least one world")
+        self.render_mode = _render_mode(render_mode)
         world.setdefault("threads", 0)
         self.num_envs = num_envs
         self._arenas = [_Arena(experiment, observe, act, controller, dict(world)) for _ in range(num_envs)]
@@ -218,7 +224,7 @@ class VectorEnv(_VectorBase):
         return self._observations(), rewards, terminated, truncated, {}
 
     def render(self):
-        return tuple(one.world.picture().svg for one in self._arenas)
+        return tuple(_RENDERED[self.render_mode](one.world.picture()) for one in self._arenas)
 
     def close(self, **_):
         for one in self.__dict__.get("_arenas", ()):
@@ -237,14 +243,15 @@ class ParallelEnv(_ParallelBase):
     All else as VectorEnv has it.
     """
 
-    metadata = {"render_modes": ["svg"], "name": "tandem"}
+    metadata = {"render_modes": list(_RENDERED), "name": "tandem"}
 
-    def __init__(self, experiment, *, observe, act, reward, terminated=None, episode=60.0, ticks=1, controller=None, **world):
+    def __init__(self, experiment, *, observe, act, reward, terminated=None, episode=60.0, ticks=1, controller=None,
+                 render_mode="svg", **world):
+        self.render_mode = _render_mode(render_mode)
         self._arena = _Arena(experiment, observe, act, controller, dict(world))
         self._reward, self._terminated, self._ticks = reward, terminated, int(ticks)
         self._last_tick = int(episode * self._arena.world.ticks_per_second + 0.5)
-        ids = np.array(self._arena.swarm.ids, dtype=object)
-        self.possible_agents = list(ids[self._arena.order])
+        self.possible_agents = self._arena.swarm.ids
         self.agents = []
         low, high = _bounds(self._arena.inputs)
         self._space = Box(low, high, low.shape, np.float32)
@@ -252,7 +259,6 @@ class ParallelEnv(_ParallelBase):
         self.observation_spaces = {one: self._space for one in self.possible_agents}
         self.action_spaces = {one: self._actions for one in self.possible_agents}
         self._seed = 0
-        self.render_mode = "svg"
 
     @property
     def world(self):
@@ -309,7 +315,7 @@ class ParallelEnv(_ParallelBase):
                 {one: late for one in agents}, {one: {} for one in agents})
 
     def render(self):
-        return self._arena.world.picture().svg
+        return _RENDERED[self.render_mode](self._arena.world.picture())
 
     def close(self):
         self._arena.world.close()

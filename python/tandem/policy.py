@@ -8,6 +8,7 @@ A policy that was trained here runs on robots as the controller `neural`:
 """
 
 import dataclasses
+import functools
 import json
 import math
 import os
@@ -62,11 +63,14 @@ class Layer:
     activation: str = "tanh"
 
 
-def _elements(array, signal):
-    """The signal's elements in a field's array over robots: (robots, count), a view."""
+def _elements(role, array, signal):
+    """The signal's elements in a field's array over robots: (robots, up to count), a view.
+
+    Fewer than count where the robot's device is shorter than the port."""
     if array.ndim == 1:
         array = array[:, None]
-    if signal.first < 0 or signal.count < 1 or signal.first + signal.count > array.shape[1]:
+    most = max(_described(role, signal)["count"], array.shape[1])
+    if signal.first < 0 or signal.count < 1 or signal.first + signal.count > most:
         raise ValueError(f"'{signal.port}.{signal.field}' has {array.shape[1]} elements, and the signal wants "
                          f"{signal.first} to {signal.first + signal.count - 1}")
     return array[:, signal.first : signal.first + signal.count]
@@ -87,17 +91,19 @@ class Inputs:
             port = swarm.sensor(signal.port)
             block = out[:, at : at + signal.count]
             at += signal.count
-            raw = _elements(port[signal.field], signal)
+            raw = _elements("sensor", port[signal.field], signal)
+            block[:, raw.shape[1] :] = 0.0
+            block = block[:, : raw.shape[1]]
             np.clip(raw, signal.low, signal.high, out=block, casting="unsafe")
             if signal.scale != 1.0:
                 block *= signal.scale
             if signal.offset != 0.0:
                 block += signal.offset
-            used = _used_by().get((signal.port, signal.field))
+            field = _described("sensor", signal)
             there = port["validity"] != 0
-            if used is not None:
-                entries = port[used[0]].astype(np.int64) * used[1]
-                numbers = np.arange(signal.first, signal.first + signal.count)
+            if field["used_by"]:
+                entries = port[field["used_by"]].astype(np.int64) * field["per_entry"]
+                numbers = np.arange(signal.first, signal.first + raw.shape[1])
                 block[~(there[:, None] & (numbers[None, :] < entries[:, None]))] = 0.0
             elif not there.all():
                 block[~there] = 0.0
@@ -121,8 +127,9 @@ class Outputs:
                              f"not {values.shape}")
         at = 0
         for signal in self.signals:
-            to = _elements(swarm.actuator(signal.port)[signal.field], signal)
-            wanted = np.clip(signal.scale * values[:, at : at + signal.count] + signal.offset, signal.low, signal.high)
+            to = _elements("actuator", swarm.actuator(signal.port)[signal.field], signal)
+            wanted = signal.scale * values[:, at : at + to.shape[1]] + signal.offset
+            wanted = np.clip(wanted, signal.low, signal.high)
             if to.dtype == bool:
                 wanted = wanted > 0.5
             elif to.dtype.kind in "iu":
@@ -132,23 +139,17 @@ class Outputs:
             at += signal.count
 
 
-_used = None
+@functools.cache
+def _port_fields():
+    """(role, port, field): what the field's schema says."""
+    from . import _tandem
+
+    return {(port["role"], port["name"], field["name"]): field for port in _tandem.ports() for field in port["fields"]}
 
 
-def _used_by():
-    """(port, field): the field that counts its entries in use, and elements of each entry."""
-    global _used
-    if _used is None:
-        from . import _tandem
-
-        _used = {}
-        for port in _tandem.ports():
-            if port["role"] != "sensor":
-                continue
-            for field in port["fields"]:
-                if field["used_by"]:
-                    _used[port["name"], field["name"]] = (field["used_by"], field["per_entry"])
-    return _used
+def _described(role, signal):
+    """What the schema says of a signal's field; of one from a plug-in, that it is as long as its array."""
+    return _port_fields().get((role, signal.port, signal.field), {"count": 0, "used_by": ""})
 
 
 class Policy:

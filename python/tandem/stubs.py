@@ -100,7 +100,7 @@ def _getter_type(member):
 
 _PROPERTY_TYPES = {
     "World": {"swarms": "list[Swarm]", "poses": "npt.NDArray[np.float64]"},
-    "Swarm": {"poses": "npt.NDArray[np.float64]", "alive": "npt.NDArray[np.bool_]", "order": "npt.NDArray[np.int64]",
+    "Swarm": {"poses": "npt.NDArray[np.float64]", "alive": "npt.NDArray[np.bool_]",
               "ids": "list[str]", "sensors": "list[str]", "actuators": "list[str]", "published_names": "list[str]"},
 }
 
@@ -130,11 +130,11 @@ _RETURNS = {"__enter__": "World", "__init__": "None", "__len__": "int", "view": 
 
 _ENV_RETURNS = {
     "VectorEnv": {
-        "__init__": "None", "close": "None", "save_policy": "None", "render": "tuple[str, ...]",
+        "__init__": "None", "close": "None", "save_policy": "None", "render": "tuple[Any, ...]",
         "reset": "tuple[npt.NDArray[np.float32], dict[str, Any]]",
         "step": "tuple[npt.NDArray[np.float32], npt.NDArray[np.float64], npt.NDArray[np.bool_], npt.NDArray[np.bool_], dict[str, Any]]"},
     "ParallelEnv": {
-        "__init__": "None", "close": "None", "save_policy": "None", "render": "str", "state": "npt.NDArray[np.float32]",
+        "__init__": "None", "close": "None", "save_policy": "None", "render": "Any", "state": "npt.NDArray[np.float32]",
         "reset": "tuple[dict[str, npt.NDArray[np.float32]], dict[str, dict[str, Any]]]",
         "step": "tuple[dict[str, npt.NDArray[np.float32]], dict[str, float], dict[str, bool], dict[str, bool], dict[str, dict[str, Any]]]"},
 }

@@ -20,14 +20,14 @@ class Turner:
         self.speed = float(params.get("velocity", "5 cm/s").split()[0]) / 100
 
     def step(self):
-        near = self.distance[: self.proximity.count].min() < 0.03
+        near = self.distance.min() < 0.03
         self.history.append(bool(near))
         self.wheels.left = -0.02 if near else self.speed
         self.wheels.right = self.speed * (1.0 if len(self.history) < 30 else self.random.uniform(0.9, 1.0))
 
 
 def turn(swarm):
-    near = swarm.sensor("proximity").distance[:, :8].min(axis=1) < 0.03
+    near = swarm.sensor("proximity").distance.min(axis=1) < 0.03
     wheels = swarm.actuator("differential_steering")
     wheels.left = np.where(near, -0.02, 0.05)
     wheels.right = 0.05

@@ -76,6 +76,16 @@ class Policies(unittest.TestCase):
             wheels = [json.loads(line) for line in file if '"wheels"' in line]
         self.assertTrue(any(one["left"] > one["right"] > 0 for one in wheels), wheels)
 
+    def test_may_look_at_more_sensors_than_a_robot_has(self):
+        wide = [("proximity", "distance", {"count": 24, "high": 0.1, "scale": 10.0})]
+        layers = [(np.ones((2, 24)) * 0.01, np.zeros(2), "tanh")]
+        policy, world = tandem.Policy(wide, ACT, layers), tandem.World(room())
+        world.step(3)
+        read = policy.inputs.read(world.swarm)
+        self.assertTrue((read[:, :8] > 0).all() and (read[:, 8:] == 0).all())
+        with self.assertRaisesRegex(ValueError, "has 8 elements, and the signal wants 0 to 24"):
+            tandem.Policy([("proximity", "distance", {"count": 25})], ACT, [(np.ones((2, 25)), np.zeros(2))])(world.swarm)
+
     def test_come_back_from_their_file(self):
         policy = tandem.Policy(OBSERVE, ACT, some_layers())
         policy.save(self.path)
@@ -185,6 +195,13 @@ class Environments(unittest.TestCase):
 
         np.testing.assert_array_equal(play(2), play(2))
 
+    def test_render_text_or_pixels(self):
+        self.assertIn("<svg", self.make(1).render()[0])
+        pixels = self.make(2, render_mode="rgb_array").render()
+        self.assertEqual((len(pixels), pixels[0].dtype, pixels[0].ndim), (2, np.uint8, 3))
+        with self.assertRaisesRegex(ValueError, "'human'; there are 'svg', 'rgb_array'"):
+            self.make(render_mode="human")
+
     def test_refuse_actions_of_a_wrong_shape(self):
         vector = self.make()
         vector.reset(seed=1)
@@ -195,7 +212,7 @@ class Environments(unittest.TestCase):
 
     def test_follow_pettingzoos_conventions_for_agents(self):
         def reward(world, swarm):
-            return swarm.poses[swarm.order, 0]
+            return swarm.poses[:, 0]
 
         parallel = env.ParallelEnv(room(robots=4), observe=OBSERVE, act=ACT, reward=reward, episode=1.0)
         observations, infos = parallel.reset(seed=2)

@@ -49,26 +49,81 @@ class Worlds(unittest.TestCase):
         self.assertEqual((one.tick, one.time, one.state), (200, 20.0, "finished"))
         self.assertEqual(one.ids, [f"ep{i}" for i in range(6)])
 
-    def test_show_ports_without_a_copy(self):
+    def test_show_ports_as_arrays_that_follow_them(self):
         world = tandem.World(room(robots=600, side=8.0))  # three blocks
         swarm = world.swarm
         self.assertEqual(len(swarm), 600)
         distance = swarm.sensor("proximity").distance
-        self.assertEqual((distance.shape, distance.dtype, distance.flags.writeable, distance.flags.owndata),
-                         ((600, 24), np.float32, False, False))
+        self.assertEqual((distance.dtype, distance.flags.writeable), (np.float32, False))
         before = distance.copy()
         world.step()
         self.assertFalse(np.array_equal(distance, before))
         self.assertTrue((swarm.sensor("proximity").validity == 2).all())
         self.assertIs(swarm.sensor("proximity").distance, distance)
 
-    def test_name_the_robots_of_rows(self):
-        world = tandem.World(room(robots=300, side=6.0))
+    def test_have_arrays_as_wide_as_the_devices_of_their_robots(self):
+        swarm = tandem.World(room(robots=3)).swarm
+        self.assertEqual((swarm.sensor("proximity").distance.shape, swarm.actuator("leds").rgb.shape), ((3, 8), (3, 3 * 8)))
+        swarm = tandem.World(FOOTBOTS).swarm
+        self.assertEqual(swarm.sensor("proximity").distance.shape, (len(swarm), 24))
+        seen = []
+
+        class Sees:
+            def __init__(self, robot, params):
+                seen.append(robot.sensor("proximity").distance.shape)
+
+            def step(self):
+                pass
+
+        tandem.World(room(robots=1), controllers={"d": Sees})
+        self.assertEqual(seen, [(8,)])
+
+    def test_have_their_robots_in_the_order_of_the_file(self):
+        world = tandem.World(room(robots=300, side=8.0))
         swarm = world.swarm
-        world.step(5)
-        self.assertEqual([swarm.ids[i] for i in swarm.order], world.ids)
-        np.testing.assert_array_equal(swarm.poses[swarm.order], world.poses)
-        self.assertEqual(world.pose("ep17"), tuple(world.poses[17]))
+        distance = swarm.sensor("proximity").distance
+        for seed in (None, 8):
+            if seed is not None:
+                world.reset(seed)
+            world.step(5)
+            self.assertEqual(swarm.ids, [f"ep{i}" for i in range(300)])
+            self.assertEqual(swarm.ids, world.ids)
+            np.testing.assert_array_equal(swarm.poses, world.poses)
+            self.assertEqual(world.pose("ep17"), tuple(swarm.poses[17]))
+            # Readings are of the robots of their rows.
+            apart = np.hypot(*(world.poses[:, None, :2] - world.poses[None, :, :2]).transpose(2, 0, 1)) + 9 * np.eye(300)
+            alone = (apart.min(axis=1) > 0.3) & (abs(world.poses[:, :2]).max(axis=1) < 3.7)
+            close = apart.min(axis=1) < 0.1
+            self.assertTrue(alone.any() and close.any())
+            self.assertTrue((distance[alone] > 0.09).all())
+            self.assertLess(np.median(distance[close].min(axis=1)), 0.06)
+
+    def test_give_each_robot_its_own_command(self):
+        world = tandem.World(room(robots=300, side=8.0), driven=True)
+        wheels = world.swarm.actuator("differential_steering")
+        wheels.left = wheels.right = np.where(np.arange(300) == 17, 0.05, 0.0)
+        before = world.poses
+        world.step(1)
+        self.assertEqual(np.flatnonzero((world.poses != before).any(axis=1)).tolist(), [17])
+
+    def test_keep_commands_over_snapshots_and_hooks(self):
+        seen = []
+
+        class Writes:
+            def before_step(self, world):
+                wheels = world.swarm.actuator("differential_steering")
+                seen.append(wheels.left[4])
+                wheels.right[:] = 0.02
+
+        world = tandem.World(room(robots=6), driven=True, hooks=[Writes])
+        left, right = (getattr(world.swarm.actuator("differential_steering"), side) for side in ("left", "right"))
+        left[4] = 0.01
+        moment = world.snapshot()
+        world.step(2)
+        self.assertEqual((seen, right.tolist()), ([0.01, 0.01], [0.02] * 6))
+        left[4] = 0.03
+        world.restore(moment)
+        self.assertEqual((left[4], right[4]), (0.01, 0.0))
 
     def test_take_commands_from_arrays(self):
         world = tandem.World(room(robots=300, side=8.0), driven=True)
@@ -279,6 +334,9 @@ class Worlds(unittest.TestCase):
         world = tandem.World(room())
         self.assertIn("<svg", world._repr_svg_())
         self.assertEqual(world.picture(size=200).png()[:4], b"\x89PNG")
+        pixels = world.picture(size=300).pixels()
+        self.assertEqual((pixels.dtype, pixels.shape[2]), (np.uint8, 3))
+        self.assertEqual(pixels[0, 0].tolist(), [255, 255, 255])
         self.assertIn("<experiment", world.settings)
         self.assertIn("6 robots", repr(world))
 
