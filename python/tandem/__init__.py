@@ -22,6 +22,7 @@ finally:
     sys.setdlopenflags(_flags)
 
 from ._tandem import ExperimentError, Picture, Port, PortArrays, Random, Robot, RunFailed, Snapshot, Swarm
+from .calls import speak_plainly
 from .experiment import to_xml
 from .world import Group, World
 from .record import Record
@@ -29,6 +30,7 @@ from .policy import Layer, Policy, Signal, load_policy, save_policy
 from .rollout import Rollout, Rollouts, rollouts
 
 __version__ = _tandem.version
+speak_plainly(_tandem.World, _tandem.Group, Picture, Random, Robot, Swarm)
 
 __all__ = [
     "ExperimentError", "Group", "Layer", "Picture", "Policy", "Port", "PortArrays", "Random", "Record", "Robot", "Rollout",

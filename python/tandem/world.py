@@ -6,6 +6,7 @@ import subprocess
 import tempfile
 
 from . import _tandem
+from .calls import hinted
 from .experiment import assignments, source
 
 _HOOK_METHODS = ("before_run", "before_step", "after_step", "is_done", "after_run", "floor")
@@ -29,6 +30,7 @@ class World(_tandem.World):
     A world is used by one thread at a time. It steps without Python's lock, so other threads go on.
     """
 
+    @hinted
     def __init__(self, experiment, *, seed=None, threads=None, parameters=None, controllers=None, policies=None, driven=(),
                  hooks=(), plugins=(), record=None):
         file, text = source(experiment)

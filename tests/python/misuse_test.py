@@ -183,6 +183,21 @@ class Misuse(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "twice"):
             tandem.Group([world, world])
 
+    def test_calls_with_arguments_that_are_not_there_say_what_is(self):
+        world = tandem.World(room())
+        for call, words in ((lambda: world.step("ten"), r"World.step was called with \('ten'\); it takes \(ticks: int = 1\)"),
+                            (lambda: world.run(util=3), r"World.run has no argument 'util'; .*until.* Did you mean 'until'\?"),
+                            (lambda: world.pose(3), r"World.pose was called with \(3\); it takes \(robot: str\)"),
+                            (lambda: world.swarm.sensor(), r"Swarm.sensor was called with \(\); it takes \(name: str\)"),
+                            (lambda: world.picture(width=3), "World.picture has no argument 'width'"),
+                            (lambda: world.snapshot(3), r"it takes \(nothing\)")):
+            with self.assertRaisesRegex(TypeError, words):
+                call()
+        with self.assertRaisesRegex(ValueError, "e-puk.*Did you mean 'e-puck'"):
+            world.add_robot("new", "d", 0, 0, kind="e-puk")
+        with self.assertRaisesRegex(TypeError, "no argument 'sed'.*Did you mean 'seed'"):
+            tandem.World(room(), sed=3)
+
     def test_a_world_is_left_as_it_was_by_a_refused_reset(self):
         world, same = tandem.World(room()), tandem.World(room())
         with self.assertRaises(tandem.ExperimentError):
