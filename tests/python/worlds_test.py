@@ -62,9 +62,11 @@ class Worlds(unittest.TestCase):
         self.assertIs(swarm.sensor("proximity").distance, distance)
 
     def test_have_arrays_as_wide_as_the_devices_of_their_robots(self):
-        swarm = tandem.World(room(robots=3)).swarm
+        world = tandem.World(room(robots=3))
+        swarm = world.swarm
         self.assertEqual((swarm.sensor("proximity").distance.shape, swarm.actuator("leds").rgb.shape), ((3, 8), (3, 3 * 8)))
-        swarm = tandem.World(FOOTBOTS).swarm
+        world = tandem.World(FOOTBOTS)
+        swarm = world.swarm
         self.assertEqual(swarm.sensor("proximity").distance.shape, (len(swarm), 24))
         seen = []
 

@@ -366,6 +366,7 @@ TEST_F(Sweep, DrawsTheWaysOfTheCaseStudysShuttle) {
 TEST_F(Sweep, FindsTheStudiesThatComeWithItGood) {
   int studies = 0;
   for (const auto& entry : std::filesystem::directory_iterator(std::string(test::kSourceDir) + "/studies")) {
+    if (entry.path().extension() != ".xml") continue;
     EXPECT_EQ(tandem({"check", entry.path().string()}), 0) << entry.path() << "\n" << errors_;
     ++studies;
   }
