@@ -123,7 +123,7 @@ class RobotBridge {
   virtual std::uint64_t stop_version() const noexcept = 0;
 
   virtual LinkReport report() const = 0;
-  /// Everything that can be told, for the report.
+  /// Everything known, for the report.
   virtual void describe(StatusVisitor& visitor) const = 0;
 };
 

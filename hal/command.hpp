@@ -201,7 +201,7 @@ class CommandCall {
   /// The values that are described live as long as this.
   virtual void describe(CommandLine& line) = 0;
   /// @returns the exit code of the program: 0 done, 1 bad input, 2 wrong usage, 3 failed, 4 different. An error is a
-  /// failure, and told.
+  /// failure, and reported.
   virtual Result<int> run(const CommandContext& context) = 0;
 };
 

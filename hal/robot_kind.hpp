@@ -99,8 +99,8 @@ struct Quadrotor {
   double max_turn_rad_s = 0.0;
   double max_lean_rad = 0.0;    ///< that it obeys
   double max_thrust = 0.0;      ///< of all rotors together, in parts of its weight
-  double climb_m_s = 0.0;       ///< when taking off or rising to the ceiling, unless told otherwise
-  double sink_m_s = 0.0;        ///< when landing, unless told otherwise
+  double climb_m_s = 0.0;       ///< when taking off or rising to the ceiling, by default
+  double sink_m_s = 0.0;        ///< when landing, by default
   double take_off_m = 0.0;      ///< height to which it takes off
   double inertia_kg_m2 = 0.0;   ///< moment of inertia about each axis
   double rotor_arm_m = 0.0;     ///< from the axis to each of the rotors, at 45, 135, -135 and -45 degrees

@@ -53,7 +53,7 @@ class Laboratory {
   static hal::Result<std::unique_ptr<Laboratory>> run(const MixedRun& run);
 
   hal::Result<TrueTrack> log_of(const std::string& id) const;
-  /// When the robot's wheels were told another speed (CLOCK_MONOTONIC, ns), by its own log.
+  /// When the robot's wheels got another speed (CLOCK_MONOTONIC, ns), by its own log.
   std::vector<double> told_of(const std::string& id) const;
   hal::Result<RecordTable> table(const std::string& name) const;
   /// What `tandem fit` finds in the record.
@@ -69,7 +69,7 @@ class Laboratory {
 
 /// Runs and lets `judge` fill a part with tables and figures, up to three times: what is not met while a thread had to
 /// wait 60 ms and more for a processor is not the program's doing, so that trial is void. Rows of a last one that is
-/// void are not made. All trials are told in a table. @throws std::runtime_error when nothing can be run
+/// void are not made. All trials are in a table. @throws std::runtime_error when nothing can be run
 void in_fair_trials(Part& part, const MixedRun& run, const std::function<void(Part&, const Laboratory&)>& judge);
 
 }  // namespace tandem::validate

@@ -45,7 +45,7 @@ class Window {
  public:
   /// Errors: a port that is taken, an address that this machine does not have, no random numbers.
   static hal::Result<std::unique_ptr<Window>> open(const WindowOptions& options);
-  /// Viewers are told that the window closes.
+  /// Viewers learn that the window closes.
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;

@@ -25,7 +25,7 @@ struct CheckedFile {
   static constexpr std::string_view kCategory = "checked_file";
   using Crosses = hal::Layouts<Libraries>;
   std::string_view name;
-  /// @returns the exit code; what is wrong, or in it, was told.
+  /// @returns the exit code; errors, or the contents, were printed.
   int (*check)(const std::string& path, const Libraries& plugins) = nullptr;
 };
 

@@ -5,7 +5,7 @@
 
 namespace tandem::app {
 
-/// What is to be done again; nothing where no record was named. @returns the program's code; what was wrong was told.
+/// What is to be done again; nothing where no record was named. @returns the program's code; errors were reported.
 int read_repeated(RunPlan& plan);
 /// The repeated run begins with the scripts of the record, whatever stands in their files now.
 void run_recorded_scripts(RunPlan& plan);

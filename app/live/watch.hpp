@@ -22,7 +22,7 @@ class Watch {
     std::string experiment;
     std::int64_t ticks = 0;  ///< 0: no end of its own
     std::int64_t ticks_per_second = 10;
-    std::function<void(WatchMoment&)> add_real = {};  ///< what is told of real robots; empty: none take part
+    std::function<void(WatchMoment&)> add_real = {};  ///< lines about real robots; empty: none take part
     std::function<void()> end = {};                   ///< ends the run in order; on any thread
   };
   /// Errors: no robot fits; none of those that do has the port.

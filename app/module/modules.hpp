@@ -42,7 +42,7 @@ hal::Status need_module(hal::PluginLoader& loader, std::string_view name);
 hal::Status need_modules_of(hal::PluginLoader& loader, const hal::PluginNote& note);
 /// What loaders of this program do when a plug-in needs a module, or a library of the checkout's own is not built yet.
 hal::PluginLoader::OnDemand on_demand() noexcept;
-/// All that are built. What does not load is told, and left out.
+/// All that are built. What does not load is reported, and left out.
 void load_built_modules();
 
 /// Registers all that a loaded module brings, and a `LoadedModule`.

@@ -21,7 +21,7 @@ class RobotLines {
   void take(hal::Severity severity, std::string_view text, double now_s);
   /// Lines that are due, in the order in which the first of each came. `all`: whatever is held.
   std::vector<std::string> due(double now_s, bool all = false);
-  /// Information that was not told.
+  /// Unreported information.
   std::size_t left_out() const noexcept { return left_out_; }
 
  private:

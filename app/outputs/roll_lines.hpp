@@ -12,7 +12,7 @@ namespace tandem::app {
 std::vector<std::string> roll_lines(const std::vector<core::RollRow>& rows, std::size_t columns);
 
 /// Where there is no terminal to draw on: tells the list when what is urgent in it changes, at most once in `kEvery_s`,
-/// and later less often; the last state is always told.
+/// and later less often; the last state is always reported.
 class RollTeller {
  public:
   static constexpr double kEvery_s = 1.0, kLater_s = 10.0;

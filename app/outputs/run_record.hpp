@@ -17,7 +17,7 @@ namespace tandem::app {
 /// What a record says at its start, with the scripts of controllers.
 hal::Json start_of_record(core::World& world, const InputFiles& inputs);
 
-/// Keeps a record in step with its run. An error is told once; nothing is written then any more.
+/// Keeps a record in step with its run. An error is reported once; nothing is written then any more.
 class RunRecord {
  public:
   /// `record` must outlive this.

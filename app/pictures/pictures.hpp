@@ -56,7 +56,7 @@ class Pictures {
   /// Whether `draw` is to be called after so many ticks.
   bool wants(std::int64_t ticks_done) const noexcept;
   void draw(std::int64_t ticks_done, core::Drawing drawing);
-  /// Waits until all is drawn. What failed is told when it does; @returns whether nothing has.
+  /// Waits until all is drawn. A failure is reported at once; @returns whether nothing has.
   bool close();
 
  private:

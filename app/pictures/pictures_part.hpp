@@ -13,7 +13,7 @@ struct RunPlan;
 
 /// Error: they cannot be made here.
 hal::Result<std::vector<NamedFile>> picture_files(const RunOptions& options);
-/// Opens them, and the layers over them. @returns the program's code; what was wrong was told.
+/// Opens them, and the layers over them. @returns the program's code; errors were reported.
 int open_pictures(RunPlan& plan);
 /// Draws; says how the run is drawn now.
 int add_pictures(RunPlan& plan, core::Run& run);

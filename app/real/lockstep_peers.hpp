@@ -22,7 +22,7 @@ hal::Result<std::unique_ptr<mixed_reality::LockstepRun>> make_lockstep(core::Wor
                                                                        const hal::Log& log);
 
 /// The same, with all of them there; null when the world has none, or no run waits for them. `code` is not kDone when
-/// they cannot, which was told.
+/// they cannot, which was reported.
 std::unique_ptr<mixed_reality::LockstepRun> join_peers(core::World& world, const hal::PluginLoader& loader,
                                                        const std::atomic<bool>& stop, const hal::Log& log, int& code);
 

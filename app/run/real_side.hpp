@@ -52,7 +52,7 @@ class RealRobots {
 };
 
 /// All of one run that is not simulated. Calls come in the order in which they stand here. Codes are those of the
-/// program (app/exit_code.hpp); what was wrong was told.
+/// program (app/exit_code.hpp); errors were reported.
 class RealSide {
  public:
   virtual ~RealSide() = default;

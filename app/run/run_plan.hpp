@@ -80,11 +80,11 @@ bool is_held(const RunOptions& options) noexcept;
 
 /// The module of that name that this run has; null: none.
 const RunModule* module_of(const RunPlan& plan, std::string_view name) noexcept;
-/// Has the run have it; built and loaded where that is needed. @returns the program's code; what was wrong was told.
+/// Has the run have it; built and loaded where that is needed. @returns the program's code; errors were reported.
 int need_for_run(RunPlan& plan, std::string_view name);
 
 /// Reads the experiment, starts the guardian, makes the world, opens the outputs. @returns kDone, or what was wrong,
-/// which was told.
+/// which was reported.
 int prepare_run(RunPlan& plan);
 
 }  // namespace tandem::app

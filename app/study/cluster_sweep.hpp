@@ -26,7 +26,7 @@ struct ClusterOptions {
 /// and waits for its jobs where they are still under way. Batches that end without having made all their runs, because
 /// a job was killed, say, are handed over again as long as each attempt brings some. When every run is there the folder
 /// is removed. Ends early when `stop` is set: the jobs then go on by themselves.
-/// `say` is told once for each job that is handed over. Errors: Slurm refuses; batches bring nothing; `take` fails.
+/// `say` is called once for each job that is handed over. Errors: Slurm refuses; batches bring nothing; `take` fails.
 hal::Status sweep_on_cluster(const study::Design& design, const std::vector<std::int64_t>& runs,
                              const study::Version& version, const ClusterOptions& options,
                              const std::function<hal::Status(std::span<const study::FinishedRun>)>& take,

@@ -6,7 +6,7 @@ namespace tandem::app {
 
 struct RunPlan;
 
-/// Opens it. @returns the program's code; what was wrong was told.
+/// Opens it. @returns the program's code; errors were reported.
 int add_view(RunPlan& plan, core::Run& run);
 
 }  // namespace tandem::app

@@ -40,7 +40,7 @@ struct NodeBridgeSettings {
   hal::TimeNs shutdown_ns = 300 * hal::kNsPerMs;  ///< how long the end waits for the robot to confirm its stop
 };
 
-/// A copy of everything that can be told about the bridge.
+/// A copy of everything known about the bridge.
 template <class Parts>
 struct NodeBridgeStatus {
   RobotState state = RobotState::Absent;

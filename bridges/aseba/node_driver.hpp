@@ -100,7 +100,7 @@ class NodeWiring {
   Network& network_;
   bool observe_;
   std::uint64_t rest_version_ = 0;
-  hal::TimeNs rested_ns_ = 0;  // when everything was last told to rest
+  hal::TimeNs rested_ns_ = 0;  // when everything was last ordered to rest
 
  private:
   std::uint64_t seen_ = ~std::uint64_t{0};  // fingerprint of the nodes

@@ -41,7 +41,7 @@ class ResidentProgram {
     hal::TimeNs settle_ns = 0;                 ///< it must have run for so long since its start
     std::uint16_t told = 3;                    ///< words of the mailbox that are read
   };
-  /// What a mailbox that was read has told.
+  /// The contents of a mailbox that was read.
   struct Heard {
     hal::TimeNs taken_ns = 0;  ///< when; 0: nothing new was read, and nothing below is set
     bool ours = false;         ///< its signature

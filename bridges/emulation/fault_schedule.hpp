@@ -37,7 +37,7 @@ class FaultSchedule {
   /// Whether there are faults that wait to be told since when the robot is driven: they are not active, and there is no
   /// time at which they will be.
   bool awaits_drive() const noexcept { return !waiting_.empty(); }
-  /// The robot was first told to move at `at`, which is known at `now`. A fault that should have begun before `now`
+  /// The robot was first ordered to move at `at`, which is known at `now`. A fault that should have begun before `now`
   /// begins at `now`, and lasts as long. Does nothing from the second call on.
   void driven(hal::TimeNs at, hal::TimeNs now) {
     if (!awaits_drive()) return;
@@ -51,7 +51,7 @@ class FaultSchedule {
     bool begins = true;
     const Fault* fault = nullptr;
   };
-  /// The next fault to begin or end by `now`, in order of time; each is told once.
+  /// The next fault to begin or end by `now`, in order of time; each is reported once.
   std::optional<Change> next_change(hal::TimeNs now) {
     if (told_ == changes_.size() || changes_[told_].at > now) return std::nullopt;
     return changes_[told_++];

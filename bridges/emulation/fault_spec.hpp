@@ -31,7 +31,7 @@ struct FaultSpec {
 struct FaultTimes {
   hal::TimeNs from = 0;
   hal::TimeNs until = kEndless;
-  /// They count from when the robot is first told to move: wheels a speed that is not 0, an eye-bot a setpoint. A
+  /// They count from when the robot is first ordered to move: wheels a speed that is not 0, an eye-bot a setpoint. A
   /// tracker's from when a robot that it sees first moves. Else from the start of the emulator.
   bool since_drive = false;
 };

@@ -23,7 +23,7 @@ struct WheelErrors {
   bool any() const noexcept;
 };
 
-/// Two wheels of one robot, with a memory of what they were told.
+/// Two wheels of one robot, with a memory of their commands.
 class ImperfectWheels {
  public:
   struct Ways {

@@ -31,7 +31,7 @@ struct BridgeSettings {
 /// Timing for a link of this name: Bluetooth (rfcomm) devices and those in a network answer late.
 SessionTiming timing_for(std::string_view link_name) noexcept;
 
-/// A copy of everything that can be told about the bridge.
+/// A copy of everything known about the bridge.
 struct BridgeStatus {
   SessionState state = SessionState::Absent;
   std::string trouble;   ///< why it is not active; the opener's message when the link does not open

@@ -53,7 +53,7 @@ struct Actuation {
 /// Whether there is a device behind readings that firmwares answer with zeros where it is missing. What measures never
 /// reads exactly 0 on all its channels for long: ground sensors have an offset in the dark, gyroscopes noise.
 struct Presence {
-  static constexpr std::uint32_t kMissing = 20;  ///< so many answers of nothing but zeros, and people are told
+  static constexpr std::uint32_t kMissing = 20;  ///< so many answers of nothing but zeros, and people are informed
 
   bool measured = false;    ///< something other than 0 came: it is there
   std::uint32_t zeros = 0;  ///< answers before that

@@ -67,7 +67,7 @@ class Firmware {
   void cut_next_answer() { cut_next_answer_ = true; }
 
   const Options& options() const noexcept { return options_; }
-  /// When a wheel was first told a speed that is not 0.
+  /// When a wheel first got a speed that is not 0.
   std::optional<hal::TimeNs> first_driven_at() const noexcept { return first_driven_at_; }
 
  private:

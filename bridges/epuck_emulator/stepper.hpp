@@ -22,7 +22,7 @@ class Stepper {
   void set_count(std::int32_t count) noexcept { count_ = count; }
   /// The speed that the motor has: signed steps a second, after clamping and rounding of the period.
   double real_steps_s() const noexcept;
-  /// The speed that it was told, after clamping.
+  /// The commanded speed, after clamping.
   std::int32_t told_steps_s() const noexcept { return told_steps_s_; }
 
  private:

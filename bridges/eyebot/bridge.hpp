@@ -33,7 +33,7 @@ struct BridgeSettings {
   SendPermit permit = {};  ///< asked before everything that is said
 };
 
-/// A copy of everything that can be told about the bridge.
+/// A copy of everything known about the bridge.
 struct BridgeStatus {
   RobotState state = RobotState::Absent;
   std::string trouble;       ///< why it is not active, or what is amiss; `link_trouble` when there is some

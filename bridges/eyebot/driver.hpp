@@ -236,7 +236,7 @@ class EyebotDriver {
   std::string missing_readings() const;
   std::string refused_order() const;
 
-  // What it is told.
+  // Its commands.
   void count(const hal::Limited& limited) noexcept;
   void say_setpoint(hal::TimeNs now) noexcept;
   void say_devices(hal::TimeNs now) noexcept;

@@ -39,7 +39,7 @@ struct Datagram {
 ///   landed     speed_m_s: it has come down on the ground
 ///   lights, pan_tilt, scanner, radio: what the devices do now
 ///   malformed  channel, why, count of the channel: at most once in ten seconds a channel
-///   sent       channel, count, last_seq: told at the end, a line a channel
+///   sent       channel, count, last_seq: at the end, a line a channel
 class Eyebot {
  public:
   struct Options {
@@ -169,7 +169,7 @@ class Eyebot {
   std::int32_t answered_seq_ = -1;      // the last state after which a command has come
   std::int32_t answering_session_ = 0;  // from whom
 
-  // As told the last time.
+  // As reported last.
   Mode told_mode_ = Mode::Off;
   Failsafe told_failsafe_ = Failsafe::None;
   std::int32_t told_controller_ = 0;

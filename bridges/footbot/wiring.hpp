@@ -117,7 +117,7 @@ class Wiring : public aseba::NodeWiring {
     aseba::ResidentProgram dead_man;
     bool has_dead_man = false;     // it can have one
     std::string dead_man_trouble;  // why not
-    std::int16_t alive = -1;       // as it was last told; -1: not yet
+    std::int16_t alive = -1;       // its last command; -1: not yet
     hal::TimeNs alive_ns = 0, driven_since_ns = 0, mail_asked_ns = 0;
     std::string stopped_itself;       // for look_for_restarts
     hal::TimeNs restart_told_ns = 0;  // by its memory or by its program, whichever showed it first

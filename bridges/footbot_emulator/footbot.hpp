@@ -57,9 +57,9 @@ class Footbot {
   Module& module(Place place) { return modules_[static_cast<std::size_t>(place)]; }
   const Module& module(Place place) const { return modules_[static_cast<std::size_t>(place)]; }
   const BodyCommand& command() const noexcept { return command_; }
-  /// When a motor was last told a speed.
+  /// When a motor last got a speed.
   std::optional<hal::TimeNs> wheels_commanded_at() const noexcept { return wheels_commanded_at_; }
-  /// When a motor was first told a speed that is not 0.
+  /// When a motor first got a speed that is not 0.
   std::optional<hal::TimeNs> first_driven_at() const noexcept { return first_driven_at_; }
 
  private:

@@ -77,7 +77,7 @@ class GuardianClient {
   /// The guardian process lives, and is not frozen. Else nobody would stop robots of a killed hub: they must not move.
   bool guards() const noexcept;
   pid_t process() const noexcept;
-  /// What is to be told to people since the last call.
+  /// Notices to people since the last call.
   std::vector<std::string> take_news();
 
   /// Ends in order: robots that were not released are stopped by the guardian; waits at most `timeout_ns` for them.

@@ -5,7 +5,7 @@
 //   claim, watch, release …      -- socket ------->  remembers how each robot is stopped; a lock file each
 //   (dies)                       -- pidfd -------->  dead
 //
-//   dead or frozen  ->  it is the guardian's turn: every robot is told to stop at once, each by a thread of its own,
+//   dead or frozen  ->  it is the guardian's turn: every robot is ordered to stop at once, each by a thread of its own,
 //                       until it confirms
 //   frozen, and back ->  all are stopped once more, for what the hub may have written while it woke up; then it is the
 //                       hub's turn again

@@ -25,7 +25,7 @@ class PeerController {
   virtual bool step(hal::Tick tick, std::string& why) = 0;
 };
 
-/// Makes the controller for the robot that the hub named. Error: it cannot be; the hub is told, and the peer ends.
+/// Makes the controller for the robot that the hub named. Error: it cannot be; the hub learns it, and the peer ends.
 using PeerMaker = std::function<hal::Result<std::unique_ptr<PeerController>>(const RobotMessage&)>;
 
 struct PeerCounts {

@@ -74,7 +74,7 @@ class Thymio {
   std::int16_t right_target() const { return node_.words("motor.right.target")[0]; }
   /// When the motors' targets last changed.
   std::optional<hal::TimeNs> wheels_commanded_at() const noexcept { return wheels_commanded_at_; }
-  /// When a motor was first told a speed that is not 0.
+  /// When a motor first got a speed that is not 0.
   std::optional<hal::TimeNs> first_driven_at() const noexcept { return first_driven_at_; }
 
  private:

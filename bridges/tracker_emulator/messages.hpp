@@ -18,7 +18,7 @@ struct Seen {
 /// All things of one exposure.
 struct Exposure {
   std::int64_t stamp_ns = 0;
-  double sd_m = 0.0, sd_rad = 0.0;  ///< 0: not told
+  double sd_m = 0.0, sd_rad = 0.0;  ///< 0: unknown
   std::vector<Seen> seen;
 };
 

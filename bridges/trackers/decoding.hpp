@@ -24,7 +24,7 @@ bool decode_compact(std::span<const std::byte> data, std::vector<Sighting>& out)
 /// The same for a message of the LCM type tandem.poses_t.
 bool decode_lcm(std::span<const std::byte> data, std::vector<Sighting>& out);
 
-/// Zero stands for what is not told.
+/// Zero stands for unknown.
 inline std::optional<double> told(double value) noexcept {
   return value == 0.0 ? std::nullopt : std::optional(value);
 }

@@ -56,7 +56,7 @@ class WiredLine : public WiredRobot {
 
   hal::TimeNs now_ns() const noexcept { return now_; }
 
-  /// What every driver is told.
+  /// The input of every driver.
   template <class Settings>
   static void set_robot(Settings& settings, const WiredRequest& request, hal::TimeNs handshake_ns) {
     settings.robot.id = request.robot;

@@ -15,7 +15,7 @@ namespace tandem::controllers {
 
 /// Does what datagrams say that come to a UDP port: each holds an order, or one a line (see `Order`). Orders are
 /// obeyed in the order of arrival, from the next tick on. When none has come for a while, wheels and a turret that was
-/// told to turn stop, so that a viewer that dies leaves no robot driving: drivers repeat the order. Claws stay as
+/// ordered to turn stop, so that a viewer that dies leaves no robot driving: drivers repeat the order. Claws stay as
 /// they are, not to drop what they hold, and so does a turret that was told where to look.
 ///
 /// What is not understood, or needs a device that the configuration does not list, is answered with `error: …`; what is

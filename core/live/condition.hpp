@@ -14,7 +14,7 @@
 
 namespace tandem::core {
 
-/// What is waited for. Each is told once when it begins to hold, and again only after it did not.
+/// What is waited for. Each is reported once when it begins to hold, and again only after it did not.
 class Conditions {
  public:
   static constexpr std::size_t kMost = 20;

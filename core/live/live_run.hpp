@@ -57,7 +57,7 @@ struct LiveOptions {
   const std::atomic<bool>* stop = nullptr;  ///< ends the run, too
 };
 
-/// What a viewer is told of a run.
+/// A viewer's view of a run.
 struct LiveState {
   bool paused = false;
   std::optional<double> speed;  ///< that is asked for

@@ -47,7 +47,7 @@ struct Block {
   std::size_t at = 0;  ///< where it begins in the file
 };
 
-/// Reads a block file. No input is undefined: what is damaged is left out and told.
+/// Reads a block file. No input is undefined: what is damaged is left out and reported.
 class BlockFileReader {
  public:
   /// Maps the file into memory; it must not shrink meanwhile. Errors: cannot be read; no block file; another version.

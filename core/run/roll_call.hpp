@@ -7,12 +7,12 @@
 
 namespace tandem::core {
 
-/// In the order in which people are told.
+/// In the order in which people are informed.
 enum class Presence : std::uint8_t {
   MayMove,         ///< it cannot be reached, and is not known to rest
   WaitsForPerson,  ///< it stands until it is armed
   Unreachable,     ///< it cannot be reached, and was at rest before
-  Stops,           ///< it was told to stand, and does not yet
+  Stops,           ///< it was ordered to stand, and does not yet
   Drives,
   Stands
 };

@@ -127,7 +127,7 @@ class Run {
 
   /// To all parts, in the order of their turns.
   void tell(hal::Tick tick, const hal::Json& event);
-  /// The run has failed, and goes on; the first failure is told at the end.
+  /// The run has failed, and goes on; the first failure is reported at the end.
   void fail(const std::string& why);
   /// Why the run has failed besides the world's own failure; empty: it has not.
   const std::string& failure() const noexcept { return failure_; }

@@ -12,7 +12,7 @@
 
 namespace tandem::core {
 
-/// A turret: what it was told, and where it is.
+/// A turret: its command, and its place.
 struct TurretState {
   static constexpr std::string_view kName = "turret";
   static constexpr std::string_view kDoc = "What turrets were told, and where they are.";

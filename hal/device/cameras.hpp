@@ -123,7 +123,7 @@ struct CameraMount {
 struct CameraPart {
   static constexpr std::string_view kName = "perspective_camera";
   static constexpr std::string_view kDoc = "A camera with a lens.";
-  CameraMount usual = {}, front = {};  ///< where it sits unless told otherwise, and where as a front camera
+  CameraMount usual = {}, front = {};  ///< where it sits by default, and where as a front camera
   bool in_front = false;               ///< which of the two
   double aperture_rad = 0.0;           ///< from its axis to a corner of the image
   double focal_length_m = 0.0;

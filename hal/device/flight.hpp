@@ -244,7 +244,7 @@ enum class FlightPhase : std::uint8_t {
   Stopped = 9  ///< motors cut in an emergency
 };
 
-/// Why a flying robot does not do as told. The numbers are part of the port.
+/// Why a flying robot does not obey. The numbers are part of the port.
 enum class FlightFailsafe : std::uint8_t {
   None = 0,
   CommandTimeout = 1,

@@ -11,7 +11,7 @@
 
 namespace tandem::hal {
 
-/// A part of robots whose wheels are turned by stepper motors. The wheels of those without turn as they are told.
+/// A part of robots whose wheels are turned by stepper motors. The wheels of those without turn as commanded.
 struct SteppersPart {
   static constexpr std::string_view kName = "steppers";
   static constexpr std::string_view kDoc = "Stepper motors, whose steps last whole periods of a timer.";

@@ -48,7 +48,7 @@ struct BarrierRobot {
   hal::TimeNs pose_ns = 0;                ///< when; monotonic, as all times here
   double error_m = 0.0, error_rad = 0.0;  ///< by which the pose is wrong, at most
   double latency_s = 0.0;
-  bool hears = true;  ///< false: it goes on as it was told last, whatever it is told
+  bool hears = true;  ///< false: it goes on by its last command, whatever it gets
   Motion wanted;
   std::vector<Obstacle> obstacles;
 

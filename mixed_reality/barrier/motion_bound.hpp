@@ -1,4 +1,4 @@
-// Bounds on where a robot may come: by what it was told of late, and by what it is to be told now.
+// Bounds on where a robot may come: by its commands of late, and by its command now.
 //
 // The contract that every bound counts on, of a robot that obeys with delay and inertia: a command may move it until
 // `reaction_s` after the next one was sent, which is the latency of its link and the time in which it settles to any
@@ -25,11 +25,11 @@ struct Motion {
 struct MotionLimits {
   double radius_m = 0.0, height_m = 0.0;
   double wheel_base_m = 0.0;  ///< 0: it flies, or stays
-  double settle_s = 0.0;      ///< until it moves as a new command says, whatever it was told before
+  double settle_s = 0.0;      ///< until it moves as a new command says, whatever it got before
 };
 MotionLimits motion_limits(const hal::RobotKind& kind) noexcept;
 
-/// What a robot was told of late. The oldest are merged where there are more than it holds.
+/// A robot's commands of late. The oldest are merged where there are more than it holds.
 class CommandTrail {
  public:
   static constexpr std::size_t kMost = 48;
@@ -64,7 +64,7 @@ class MotionBound {
     double reaction_s = 0.0;
   };
   void begin(const CommandTrail& trail, const Times& times, bool on_wheels) noexcept;
-  /// Of a robot on wheels: its heading is known so well, and it is told to turn so fast.
+  /// Of a robot on wheels: its heading is known so well, and it is ordered to turn so fast.
   void turn(const hal::Pose& pose, double error_rad, double turn_rad_s) noexcept;
   /// A direction of length 1: level, or straight up or down.
   void look(const std::array<double, 3>& direction) noexcept;

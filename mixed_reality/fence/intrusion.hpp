@@ -1,4 +1,4 @@
-// Virtual things that a real robot drives into: nothing there holds it back but what it is told.
+// Virtual things that a real robot drives into: nothing there holds it back but its commands.
 #pragma once
 #include <string>
 

@@ -11,7 +11,7 @@ namespace tandem::mixed_reality {
 class FlightOrderGate {
  public:
   /// Once a tick. `wanted`: the controller's; `on_ground`: motors off, or landed, as far as the robot says.
-  /// @returns what the robot is to be told.
+  /// @returns the robot's order.
   hal::FlightTask pass(const hal::FlightTask& wanted, bool may_drive, bool on_ground) noexcept {
     if (!may_drive) {
       stopped_at_ = wanted.order;

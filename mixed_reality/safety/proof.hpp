@@ -31,7 +31,7 @@ class Proof {
   static constexpr hal::TimeNs kAway_ns = 2 * hal::kNsPerSecond;
 
   /// Once a tick, after the bridge's `latch`. Before the run nothing is doubted. `now_ns` is CLOCK_MONOTONIC.
-  /// @returns what came up since the last look: a doubt is told once, and remembered by the caller.
+  /// @returns what came up since the last look: a doubt is reported once, and remembered by the caller.
   Doubt look(RunPhase phase, const bridges::RobotBridge& bridge, hal::TimeNs now_ns);
   /// A person arms the robot that answers now; nothing where none does.
   void arm();

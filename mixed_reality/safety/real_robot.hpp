@@ -25,7 +25,7 @@ struct RealRobotParams {
   RearmParams rearm = {};
   hal::TimeNs frozen_after_ns = hal::kNsPerSecond;  ///< two ticks that lie farther apart: the hub was frozen
   bool ask_battery = false;  ///< also where its controller does not read it, and its line is slow
-  bool all_wheels = true;    ///< its wheels are told to stand where its controller takes none
+  bool all_wheels = true;    ///< its wheels are ordered to stand where its controller takes none
 };
 
 /// Joining: before the run, or in it and not armed yet. Held: it stands, and the verdict says why. Retired: another one

@@ -17,7 +17,7 @@ namespace tandem::mixed_reality {
 
 using bridges::LinkHealth;
 
-/// All that decides whether a real robot may move. What happened "since the last judgement" is told once and
+/// All that decides whether a real robot may move. What happened "since the last judgement" is reported once and
 /// remembered by the supervisor; the rest is told as it is in every tick.
 struct Conditions {
   RunPhase run = RunPhase::Running;

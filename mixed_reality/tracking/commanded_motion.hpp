@@ -15,7 +15,7 @@ class CommandedMotion {
  public:
   explicit CommandedMotion(double wheel_base_m) noexcept : wheel_base_m_(wheel_base_m) {}
 
-  /// From now on it is told this; not to be called while it cannot hear.
+  /// From now on this is its command; not to be called while it cannot hear.
   void told(hal::TimeNs now_ns, const hal::WheelSpeeds& wheels) noexcept {
     commands_.note({now_ns, wheels.left_m_s, wheels.right_m_s});
   }

@@ -24,7 +24,7 @@ class DelayWatch {
   /// `settle_s`: from full speed to full speed back (MotionLimits); a quarter of it looks like a delay, and is none.
   DelayWatch(double wheel_base_m, double settle_s) : wheel_base_m_(wheel_base_m), settle_s_(settle_s) {}
 
-  /// From now on it is told this. Calls by time; all times are monotonic.
+  /// From now on this is its command. Calls by time; all times are monotonic.
   void told(hal::TimeNs now_ns, const hal::WheelSpeeds& wheels) noexcept;
   /// The encoders as they were read last; stamps that are not newer are left out.
   void rolled(hal::TimeNs at_ns, double left_m, double right_m) noexcept;

@@ -19,7 +19,7 @@ namespace tandem::mixed_reality {
 /// permutation is found pair by pair, a robot that stands in it included. Slipping wheels, robots that are carried, and
 /// trackers that err are no swap: no robot moves as they say.
 ///
-/// Robots that move alike cannot be told apart; they are found when they do not.
+/// Robots that move alike cannot be distinguished; they are found when they do not.
 class SwappedLinks {
  public:
   static constexpr double kFirst_m = 0.05, kFirstPoints_m = 0.15, kAlone_m = 0.2, kLast_m = 0.27;

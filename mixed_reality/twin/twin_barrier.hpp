@@ -47,7 +47,7 @@ class TwinBarrier {
   void apply(hal::FlightTask& task) const noexcept;
   void apply(hal::QuadrotorPosition& position, const core::Pose& at) const noexcept;
   void apply(hal::QuadrotorSpeed& speed) const noexcept;
-  /// At the end, what has left. Not `moved`: it was told to stand.
+  /// At the end, what has left. Not `moved`: it was ordered to stand.
   void sent(hal::TimeNs now_ns, const hal::WheelSpeeds& wheels, bool moved) noexcept;
 
   bool begun() const noexcept { return begun_; }

@@ -25,8 +25,8 @@ constexpr std::array<const char*, 4> kKinds = {"documents", "decisions", "commen
 // Lower a number when a text has been mended. Write "the hub stops the robot" instead of "who is told stops", a noun
 // instead of "what …", "again" instead of "anew".
 constexpr std::array kRiddles = {
-    Riddle{"who", {10, 20, 75, 18}},   Riddle{"whoever", {2, 20, 14, 3}}, Riddle{"what", {50, 147, 1310, 235}},
-    Riddle{"nobody", {3, 29, 10, 40}}, Riddle{"somebody", {3, 2, 5, 7}},  Riddle{"told", {5, 19, 195, 40}},
+    Riddle{"who", {10, 20, 75, 18}},   Riddle{"whoever", {2, 20, 14, 3}}, Riddle{"what", {50, 147, 1290, 235}},
+    Riddle{"nobody", {3, 29, 10, 40}}, Riddle{"somebody", {3, 2, 5, 7}},  Riddle{"told", {5, 19, 120, 40}},
     Riddle{"anew", {3, 16, 5, 15}},    Riddle{"patience", {0, 0, 0, 0}},
 };
 

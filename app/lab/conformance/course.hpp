@@ -14,7 +14,7 @@ class Course {
   Course(std::string part, const TrialMaker& maker, Judgements& all)
       : part_(std::move(part)), maker_(maker), all_(all) {}
 
-  /// False: the world cannot be made or fails, which was told; nothing else is to be tried.
+  /// False: the world cannot be made or fails, which was reported; nothing else is to be tried.
   bool runs();
   /// The same seed again, and any number of threads. False: they differ.
   bool repeats();
