@@ -285,6 +285,10 @@ TEST(Documents, LinkOnlyToWhatExists) {
   EXPECT_GT(links, 10);
 }
 
+TEST(Documents, StayWithinTheirWords) {
+  EXPECT_EQ(std::system(("'" + (kTop / "scripts/doc-words").string() + "' --most 35000 >/dev/null").c_str()), 0);
+}
+
 TEST(Documents, ListEveryDecision) {
   const std::string list = text_of(kTop / "docs/decisions/README.md");
   for (const auto& page : fs::directory_iterator(kTop / "docs/decisions")) {
