@@ -8,7 +8,7 @@
 //             was after 9 is dropped.
 //
 // Where no checkpoint can be kept (a controller that cannot be copied, no memory for one), the first stands for the
-// start of the run: it is begun anew and computed again from there, and the fingerprints of later ones say whether it
+// start of the run: it is restarted and computed again from there, and the fingerprints of later ones say whether it
 // is the same.
 //
 // Steps are counted from the start of the run. They are its ticks, until a hook goes back to a checkpoint of its own,

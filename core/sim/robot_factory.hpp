@@ -78,7 +78,7 @@ class RobotFactory {
                            const std::function<hal::Status(std::size_t row)>& accepts);
 
   /// Takes what the controllers of a block remember. @returns what gives it to those that are made in their place;
-  /// empty: they begin anew.
+  /// empty: they start again.
   using KeepMemory = std::function<std::function<hal::Status()>(std::size_t block)>;
 
   /// The scenario has changed from `before` while the run goes on, in what World::continue_with takes over: does that

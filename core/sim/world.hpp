@@ -106,14 +106,14 @@ class World {
   hal::Status reset(std::uint64_t seed, const Scenario* changed = nullptr);
   /// Whether it can. Errors, with lines: what is wrong with parameters; what differs and needs another world.
   hal::Status can_reset(const Scenario& changed) const;
-  /// Whether all controllers and hooks were made anew at the run's start: none was reset, and remembers something.
+  /// Whether all controllers and hooks were made again at the run's start: none was reset, and remembers something.
   bool all_anew() const noexcept;
 
   /// Goes on with the settings of `changed`, which otherwise is the scenario that the world was made of, from the next
   /// step on. Bodies, mechanisms, chance and time stay, and so does all that nothing says otherwise of. Robots that
   /// have another configuration get a new controller and safe commands, like robots that are added. Those that have
   /// other parameters go on with what their controllers remember, as after `load`; where that cannot be told apart
-  /// (`begin_saving` was not called at the start, the class owns memory, or cannot be copied), they begin anew, and the
+  /// (`begin_saving` was not called at the start, the class owns memory, or cannot be copied), they restart, and the
   /// log says so. Devices that are listed with other options, and fitted parameters, count at once; a hook with other
   /// options is made again, called (`before_run`), and gets back what it gave to `Hook::save`; lights, objects and
   /// floors that the run has not changed are as they say. Snapshots from before are void, and there is no reset. Call

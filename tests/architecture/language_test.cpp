@@ -25,9 +25,9 @@ constexpr std::array<const char*, 4> kKinds = {"documents", "decisions", "commen
 // Lower a number when a text has been mended. Write "the hub stops the robot" instead of "who is told stops", a noun
 // instead of "what …", "again" instead of "anew".
 constexpr std::array kRiddles = {
-    Riddle{"who", {10, 20, 75, 18}},   Riddle{"whoever", {2, 20, 14, 3}}, Riddle{"what", {50, 147, 1290, 235}},
-    Riddle{"nobody", {3, 29, 10, 40}}, Riddle{"somebody", {3, 2, 5, 7}},  Riddle{"told", {5, 19, 120, 40}},
-    Riddle{"anew", {3, 16, 5, 15}},    Riddle{"patience", {0, 0, 0, 0}},
+    Riddle{"who", {10, 20, 80, 20}},   Riddle{"whoever", {2, 20, 14, 4}}, Riddle{"what", {50, 147, 1295, 240}},
+    Riddle{"nobody", {3, 29, 14, 42}}, Riddle{"somebody", {3, 2, 5, 7}},  Riddle{"told", {5, 19, 130, 42}},
+    Riddle{"anew", {3, 16, 8, 17}},    Riddle{"patience", {0, 0, 0, 0}},
 };
 
 /// One kind of text, with the places where each word stands.
