@@ -38,6 +38,8 @@ void Appearance::Link::describe(ParamVisitor& v) {
   v.text("on", on, kOn);
   v.text("color", color, "As #rrggbb; otherwise that of the kind.");
   v.group("held", held, "While it is not 0 the link is drawn dark and filled.");
+  v.number("turned", turned_rad, unit::deg, kAny, "Counter-clockwise about the upright line through its middle.");
+  v.flag("fine", fine, "Pictures from above leave it out.");
 }
 
 void Appearance::Lamp::describe(ParamVisitor& v) {
@@ -56,9 +58,25 @@ std::vector<const Driver*> Appearance::drivers() const {
   return all;
 }
 
+Appearance::Link piece(std::string_view shape, std::string_view color, Appearance::Point low_m,
+                       Appearance::Point high_m) {
+  return {.name = {},
+          .shape = std::string(shape),
+          .low_m = low_m,
+          .high_m = high_m,
+          .color = std::string(color),
+          .fine = true};
+}
+
+Appearance::Link round_piece(std::string_view shape, std::string_view color, double x_m, double y_m, double radius_m,
+                             double low_m, double high_m) {
+  return piece(shape, color, {x_m - radius_m, y_m - radius_m, low_m}, {x_m + radius_m, y_m + radius_m, high_m});
+}
+
 Appearance appearance_of(const RobotKind& kind) {
   Appearance look;
   for (const AnyPart& part : kind.parts()) part.appear(kind, look);
+  kind.appear(look);
   // Joints behind those that they sit on.
   std::vector<Appearance::Joint> waiting = std::move(look.joints);
   look.joints.clear();
@@ -95,6 +113,7 @@ void LookPart::describe(ParamVisitor& v) {
   v.list("link", links, "A rigid piece.");
   v.list("lamp", lamps, "A light.");
   v.text("upper", upper, "The joint that turns the upper half of the body.");
+  v.flag("whole", whole, "The links are all that is seen: body and wheels or rotors add none.");
   v.text("source", source, "Where this comes from.");
 }
 
@@ -110,6 +129,7 @@ void LookPart::appear(const RobotKind& /*kind*/, Appearance& look) const {
   look.links.insert(look.links.end(), links.begin(), links.end());
   look.lamps.insert(look.lamps.end(), lamps.begin(), lamps.end());
   if (!upper.empty()) look.upper = upper;
+  if (whole) look.whole = true;
 }
 
 }  // namespace tandem::hal

@@ -53,13 +53,18 @@ struct Appearance {
   };
   /// A rigid piece, given by the corners of the upright box around it.
   struct Link {
-    static constexpr std::array<std::string_view, 3> kShapes = {"box", "cylinder", "fork"};
+    /// An upright cylinder is as wide as the box is long, and cut flat where the box is narrower. A fork has two prongs
+    /// along x; a wheel turns about y; a ring is hollow; the front of a shield is an arc; an arrow points along x.
+    static constexpr std::array<std::string_view, 8> kShapes = {"box",  "cylinder", "fork",   "wheel",
+                                                                "ball", "ring",     "shield", "arrow"};
     std::string name = {};
-    std::string shape = "box";  ///< a fork has two prongs along x
+    std::string shape = "box";
     Point low_m = {}, high_m = {};
     std::string on = {};
-    std::string color = {};  ///< "#rrggbb"; empty: that of the kind
-    Driver held = {};        ///< drawn dark and filled while the value is not 0: it holds something
+    std::string color = {};   ///< "#rrggbb"; empty: that of the kind
+    Driver held = {};         ///< drawn dark and filled while the value is not 0: it holds something
+    double turned_rad = 0.0;  ///< about the upright line through its middle
+    bool fine = false;        ///< pictures from above leave it out
     int joint = kBody;
 
     bool operator==(const Link&) const = default;
@@ -80,6 +85,7 @@ struct Appearance {
   std::vector<Link> links;
   std::vector<Lamp> lamps;
   std::string upper = {};  ///< the joint that turns the upper half of the body; empty: none does
+  bool whole = false;      ///< the links are all that is seen: body and locomotion add none
   int upper_joint = kBody;
 
   /// What moves: of each joint, then of each link that holds something, in their order.
@@ -87,8 +93,15 @@ struct Appearance {
   bool operator==(const Appearance&) const = default;
 };
 
-/// What all parts of the kind look like together, with the numbers of the joints that things sit on. What sits on a
-/// joint that no part has sits on the body.
+/// A fine link: what a body is made of, in views that come near.
+Appearance::Link piece(std::string_view shape, std::string_view color, Appearance::Point low_m,
+                       Appearance::Point high_m);
+/// One that is round seen from above, on an axis through (x, y).
+Appearance::Link round_piece(std::string_view shape, std::string_view color, double x_m, double y_m, double radius_m,
+                             double low_m, double high_m);
+
+/// What body, locomotion and all parts of the kind look like together, with the numbers of the joints that things sit
+/// on. What sits on a joint that no part has sits on the body.
 Appearance appearance_of(const RobotKind& kind);
 
 /// Whether it is written "#rrggbb".
@@ -102,6 +115,7 @@ struct LookPart {
   std::vector<Appearance::Link> links = {};
   std::vector<Appearance::Lamp> lamps = {};
   std::string upper = {};
+  bool whole = false;
   std::string source = {};
 
   void describe(ParamVisitor& v);

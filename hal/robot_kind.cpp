@@ -17,6 +17,7 @@ constexpr Range kPlace_m{-100.0, 100.0};
 constexpr Range kTurns_rad{-4.0 * std::numbers::pi, 4.0 * std::numbers::pi};
 constexpr Range kAboveZero{1e-9, 1e6};
 constexpr double kLargestRing = 1000;
+constexpr std::string_view kDarkColor = "#23272d";
 
 /// A described value whose class is not known here.
 struct Erased {
@@ -119,6 +120,63 @@ void AnyPart::attributes(ParamVisitor& v) {
 
 void RobotKind::attributes(ParamVisitor& v) {
   for (AnyPart& part : parts_) part.attributes(v);
+}
+
+namespace {
+
+/// Four rotors on two beams, guarded by rings, around a core that stands on a foot.
+void add_rotors(const Body& body, double arm_m, Appearance& look) {
+  const double r = body.radius_m, h = body.height_m, deck_m = 0.32 * h, rotor_m = 0.48 * arm_m;
+  look.links.push_back(round_piece("cylinder", "#3b4048", 0.0, 0.0, 0.26 * r, 0.1 * h, 0.55 * h));
+  look.links.push_back(round_piece("cylinder", "", 0.0, 0.0, 0.3 * r, 0.55 * h, 0.62 * h));
+  look.links.push_back(piece("arrow", kDarkColor, {-0.1 * r, -0.13 * r, 0.62 * h}, {0.24 * r, 0.13 * r, 0.63 * h}));
+  look.links.push_back(round_piece("cylinder", "#59616c", 0.0, 0.0, 0.2 * r, 0.0, 0.1 * h));
+  for (const double turned_deg : {45.0, 135.0}) {
+    look.links.push_back(
+        piece("box", "#4a515b", {-arm_m, -0.05 * arm_m, deck_m}, {arm_m, 0.05 * arm_m, deck_m + 0.06 * arm_m}));
+    look.links.back().turned_rad = turned_deg / 180.0 * std::numbers::pi;
+  }
+  for (const double x : {1.0, -1.0}) {
+    for (const double y : {1.0, -1.0}) {
+      const double x_m = x * arm_m * std::numbers::sqrt2 / 2, y_m = y * arm_m * std::numbers::sqrt2 / 2;
+      look.links.push_back(round_piece("ring", x > 0.0 ? "#c0392b" : kDarkColor, x_m, y_m, 1.06 * rotor_m, deck_m,
+                                       deck_m + 0.16 * arm_m));
+      look.links.push_back(
+          round_piece("cylinder", "#aab2bd", x_m, y_m, 0.96 * rotor_m, deck_m + 0.09 * arm_m, deck_m + 0.11 * arm_m));
+      look.links.push_back(round_piece("cylinder", kDarkColor, x_m, y_m, 0.12 * arm_m, deck_m, deck_m + 0.15 * arm_m));
+    }
+  }
+}
+
+/// A drum with an arrow on its lid; over wheels its lower half is cut flat, so that they are seen.
+void add_drum(const Body& body, const DifferentialDrive* drive, Appearance& look) {
+  const double r = body.radius_m, h = body.height_m, split_m = 0.55 * h;
+  double cut_m = 0.97 * r;
+  if (drive != nullptr && drive->wheel_radius_m > 0.0) {
+    const double wide_m = std::min(0.5 * drive->wheel_radius_m, 0.2 * r), wheel_m = drive->wheel_radius_m;
+    for (const double side : {1.0, -1.0}) {
+      const double y_m = 0.5 * side * drive->wheel_base_m;
+      look.links.push_back(piece("wheel", kDarkColor, {-wheel_m, y_m - 0.5 * wide_m, 0.0},
+                                 {wheel_m, y_m + 0.5 * wide_m, 2.0 * wheel_m}));
+    }
+    cut_m = std::clamp(0.5 * (drive->wheel_base_m - 1.2 * wide_m), 0.3 * r, cut_m);
+  }
+  const double foot_m = drive != nullptr ? 0.1 * h : 0.0;
+  look.links.push_back(piece("cylinder", "#5b626c", {-0.97 * r, -cut_m, foot_m}, {0.97 * r, cut_m, split_m}));
+  look.links.push_back(round_piece("cylinder", "", 0.0, 0.0, 0.97 * r, split_m, 0.98 * h));
+  look.links.back().on = look.upper;
+  look.links.push_back(piece("arrow", kDarkColor, {-0.35 * r, -0.45 * r, 0.98 * h}, {0.8 * r, 0.45 * r, h}));
+}
+
+}  // namespace
+
+void RobotKind::appear(Appearance& look) const {
+  if (look.whole) return;
+  if (flies())
+    add_rotors(body, flight()->rotor_arm_m, look);
+  else
+    add_drum(body, drive(), look);
+  look.whole = true;
 }
 
 void RobotKind::describe(ParamVisitor& v) {

@@ -217,11 +217,14 @@ Json look_json(const hal::Appearance& look) {
   for (const hal::Appearance::Link& l : look.links) {
     Json one = {{"name", l.name}, {"shape", l.shape}, {"low", l.low_m}, {"high", l.high_m}};
     if (!l.held.row.empty()) one["held"] = driver_json(l.held);
+    if (l.turned_rad != 0.0) one["turned"] = l.turned_rad;
+    if (l.fine) one["fine"] = true;
     add("links", std::move(one), l.on, l.color);
   }
   for (const hal::Appearance::Lamp& l : look.lamps)
     add("lamps", {{"at", l.at_m}, {"by", driver_json(l.by)}}, l.on, l.color);
   if (!look.upper.empty()) json["upper"] = look.upper;
+  if (look.whole) json["whole"] = true;
   return json;
 }
 
@@ -239,12 +242,14 @@ hal::LookPart look_of(const Json& json) {
   });
   each("links", [&look](const Json& one, const std::string& on, const hal::Driver&) {
     look.links.push_back({hal::text_of(one, "name"), hal::text_of(one, "shape"), point_of(one, "low"),
-                          point_of(one, "high"), on, color_text(one), driver_of(hal::object_of(one, "held"))});
+                          point_of(one, "high"), on, color_text(one), driver_of(hal::object_of(one, "held")),
+                          number_of(one, "turned"), flag_of(one, "fine")});
   });
   each("lamps", [&look](const Json& one, const std::string& on, const hal::Driver& by) {
     look.lamps.push_back({point_of(one, "at"), on, by, color_text(one)});
   });
   look.upper = hal::text_of(json, "upper");
+  look.whole = flag_of(json, "whole");
   return look;
 }
 

@@ -25,7 +25,9 @@ struct PictureLook {
   double trails_s = 0.0;            ///< where robots were in so many seconds before; 0: no trails
   bool axes = false;                ///< coordinates along the frame
   bool ids = false;                 ///< beside every robot
-  int height_px = 0;                ///< of the page; 0: as high as its contents need
+  bool title = true;
+  bool legend = true;  ///< with the scale
+  int height_px = 0;   ///< of the page; 0: as high as its contents need
 };
 
 /// A space seen from above. Lengths in metres, in W (x east, y north, so up on the picture); headings in radians.
@@ -36,7 +38,6 @@ struct Drawing {
     double radius_m = 0.0;
     hal::Appearance look;
     double height_m = 0.0;
-    double rotor_arm_m = 0.0;  ///< from the axis to each of four rotors; 0: none
   };
   struct Robot {
     double x_m = 0.0, y_m = 0.0;
@@ -104,7 +105,8 @@ struct Drawing {
   std::vector<Sketch::Shape> shapes;  ///< that hooks and layers drew
   /// Reflectance at (x, y), 0 black to 1 white; empty: a uniform floor, which is not drawn.
   std::function<double(double, double)> floor;
-  std::uint64_t floor_mark = 0;  ///< differs when the floor does
+  std::uint64_t floor_mark = 0;       ///< differs when the floor does
+  double floor_pixels_per_m = 200.0;  ///< finer it is not
 };
 
 /// `drawing` as an SVG document. Up to 20,000 robots are drawn with heading and lit LEDs; more of them as dots, in the

@@ -23,10 +23,7 @@ class Kinds {
       std::vector<Drawing::Kind>& all = drawing_.kinds;
       while (entry->second < all.size() && !(all[entry->second].name == robot.name && all[entry->second].look == look))
         ++entry->second;
-      if (entry->second == all.size()) {
-        const double arm_m = robot.flies() ? robot.flight()->rotor_arm_m : 0.0;
-        all.push_back({robot.name, robot.body.radius_m, look, robot.body.height_m, arm_m});
-      }
+      if (entry->second == all.size()) all.push_back({robot.name, robot.body.radius_m, look, robot.body.height_m});
     }
     return entry->second;
   }
@@ -95,6 +92,8 @@ Drawing drawing_of(const Space& space, const PictureOptions& options) {
   }
   if (const Field* floor = space.stores().fields.find("floor"); floor != nullptr && floor->mark() != 0) {
     drawing.floor_mark = floor->mark();
+    if (const FieldGrid grid = floor->grid(); grid.columns > 0)
+      drawing.floor_pixels_per_m = static_cast<double>(grid.columns) / space.arena_size_x_m();
     drawing.floor = [&space](double x_m, double y_m) { return space.floor(x_m, y_m); };
   }
   add_robots(space, options, drawing);

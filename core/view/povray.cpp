@@ -4,14 +4,18 @@
 #include <charconv>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "hal/program.hpp"
 
 namespace tandem::core {
 namespace {
 
-constexpr double kLeastHeight_m = 0.02;  // of what has none in its data
-constexpr double kFloorCells = 320.0;    // along the longer side
+constexpr double kLeastHeight_m = 0.02;     // of what has none in its data
+constexpr double kMostFloorCells = 1000.0;  // along the longer side
+constexpr double kFloorShades = 16.0;
+constexpr std::size_t kMostFloorRuns = 40'000;  // more take POV-Ray long to read
 constexpr double kCameraAngle_deg = 40.0;
 constexpr double kTilt_rad = 0.78;          // of the view, below the horizon
 constexpr std::size_t kShiningRobots = 60;  // more light sources than that take long
@@ -123,21 +127,32 @@ class Writer {
     };
     slab(x0, y0, x1, y1, -0.02, 0.0, 0.95);
     if (!d_.floor) return;
-    const double cell_m = std::max(x1 - x0, y1 - y0) / kFloorCells;
+    const double longer_m = std::max(x1 - x0, y1 - y0);
+    double cells = std::clamp(longer_m * d_.floor_pixels_per_m, 1.0, kMostFloorCells);
+    std::vector<FloorRun> runs = floor_runs({x0, y0, x1, y1}, longer_m / cells);
+    for (; runs.size() > kMostFloorRuns; cells *= 0.7) runs = floor_runs({x0, y0, x1, y1}, longer_m / cells);
+    for (const FloorRun& run : runs) slab(run.x0, run.y0, run.x1, run.y1, 0.0, 1e-4, 0.06 + 0.9 * run.level);
+  }
+
+  struct FloorRun {
+    double x0, y0, x1, y1, level;
+  };
+  std::vector<FloorRun> floor_runs(const PictureLook::Area& area, double cell_m) const {
+    std::vector<FloorRun> runs;
     const auto shade = [&](double x_m, double y_m) {
-      return std::round(12.0 * std::clamp(d_.floor(x_m, y_m), 0.0, 1.0)) / 12.0;
+      return std::round(kFloorShades * std::clamp(d_.floor(x_m, y_m), 0.0, 1.0)) / kFloorShades;
     };
-    for (double y_m = y0; y_m < y1 - 1e-9; y_m += cell_m) {
-      const double top_m = std::min(y_m + cell_m, y1);
-      const double middle_m = 0.5 * (y_m + top_m);
-      for (double x_m = x0; x_m < x1 - 1e-9;) {
+    for (double y_m = area.min_y_m; y_m < area.max_y_m - 1e-9; y_m += cell_m) {
+      const double top_m = std::min(y_m + cell_m, area.max_y_m), middle_m = 0.5 * (y_m + top_m);
+      for (double x_m = area.min_x_m; x_m < area.max_x_m - 1e-9;) {
         const double level = shade(x_m + 0.5 * cell_m, middle_m);
         double end_m = x_m + cell_m;
-        while (end_m < x1 - 1e-9 && shade(end_m + 0.5 * cell_m, middle_m) == level) end_m += cell_m;
-        slab(x_m, y_m, std::min(end_m, x1), top_m, 0.0, 1e-4, 0.06 + 0.9 * level);
+        while (end_m < area.max_x_m - 1e-9 && shade(end_m + 0.5 * cell_m, middle_m) == level) end_m += cell_m;
+        runs.push_back({x_m, y_m, std::min(end_m, area.max_x_m), top_m, level});
         x_m = end_m;
       }
     }
+    return runs;
   }
 
   void things() {
@@ -200,31 +215,17 @@ class Writer {
 
   double body_height_m(const Drawing::Kind& kind) const { return std::max(kind.height_m, 0.4 * kind.radius_m); }
 
-  /// A body at the origin that looks along x: a drum on a dark foot, an arrow on its lid.
+  /// What does not move on a body, at the origin and looking along x.
   void declare(std::size_t number) {
-    const Drawing::Kind& kind = d_.kinds[number];
-    const double r = kind.radius_m, h = body_height_m(kind);
-    const BodyColors& colors = body_colors(number);
-    s_ << "#declare Kind" << static_cast<double>(number) << " = union {\n  cylinder { ";
-    s_.point(0.0, 0.0, 0.02 * h) << ", ";
-    s_.point(0.0, 0.0, 0.3 * h) << ", " << 0.96 * r << " pigment { ";
-    s_.color(colors.edge) << " } finish { Body } }\n  cylinder { ";
-    s_.point(0.0, 0.0, 0.3 * h) << ", ";
-    s_.point(0.0, 0.0, 0.96 * h) << ", " << 0.9 * r << " pigment { ";
-    s_.color(colors.fill) << " } finish { Body } }\n  prism { linear_spline " << 0.96 * h << ", " << h << ", 5, <"
-                          << 0.75 * r << ", 0>, <" << -0.4 * r << ", " << 0.45 * r << ">, <" << -0.15 * r << ", 0>, <"
-                          << -0.4 * r << ", " << -0.45 * r << ">, <" << 0.75 * r << ", 0> pigment { ";
-    s_.color(colors.edge) << " } finish { Body } }\n";
-    for (int rotor = 0; rotor < 4 && kind.rotor_arm_m > 0.0; ++rotor) {
-      const double bearing_rad = (0.25 + 0.5 * rotor) * std::numbers::pi;
-      const double x_m = kind.rotor_arm_m * std::cos(bearing_rad), y_m = kind.rotor_arm_m * std::sin(bearing_rad);
-      s_ << "  cylinder { ";
-      s_.point(0.0, 0.0, 0.8 * h) << ", ";
-      s_.point(x_m, y_m, 0.8 * h) << ", " << 0.05 * r << " pigment { srgb 0.25 } finish { Body } }\n  torus { "
-                                  << 0.6 * kind.rotor_arm_m << ", " << 0.04 * r << " translate ";
-      s_.point(x_m, y_m, 0.8 * h) << " pigment { srgb 0.3 } finish { Body } }\n";
+    s_ << "#declare Kind" << static_cast<double>(number) << " = union {\n";
+    for (const hal::Appearance::Link& link : d_.kinds[number].look.links) {
+      if (stays(link)) this->link(link, number, false);
+      if (stays(link)) s_ << " }\n";
     }
     s_ << "}\n";
+  }
+  static bool stays(const hal::Appearance::Link& link) {
+    return link.joint == hal::Appearance::kBody && link.held.row.empty();
   }
 
   void robot(const Drawing::Robot& r) {
@@ -254,26 +255,78 @@ class Writer {
     std::size_t held = kind.look.joints.size();
     for (const hal::Appearance::Link& link : kind.look.links) {
       const bool holds = !link.held.row.empty() && d_.values[r.first_value + held++] != 0.0;
-      const hal::Appearance::Point &low = link.low_m, &high = link.high_m;
-      if (link.shape == "cylinder") {
-        const double x_m = 0.5 * (low[0] + high[0]), y_m = 0.5 * (low[1] + high[1]);
-        s_ << "  cylinder { ";
-        s_.point(x_m, y_m, low[2]) << ", ";
-        s_.point(x_m, y_m, high[2]) << ", " << 0.5 * (high[0] - low[0]);
-      } else {
-        s_ << "  box { ";
-        s_.point(low[0], low[1], low[2]) << ", ";
-        s_.point(high[0], high[1], high[2]);
-      }
-      s_ << " pigment { ";
-      if (link.color.empty() || holds)
-        s_ << "srgb " << (holds ? 0.15 : 0.6);
-      else
-        s_.color(std::string_view(link.color));
-      s_ << " } finish { Body }";
+      if (stays(link)) continue;
+      this->link(link, r.kind, holds);
       moved(r, kind, link.joint);
       s_ << " }\n";
     }
+  }
+
+  /// Its form and paint; the brace is left open for where it goes.
+  void link(const hal::Appearance::Link& link, std::size_t kind, bool holds) {
+    const hal::Appearance::Point &low = link.low_m, &high = link.high_m;
+    const double x_m = 0.5 * (low[0] + high[0]), y_m = 0.5 * (low[1] + high[1]), z_m = 0.5 * (low[2] + high[2]);
+    const double half_x_m = 0.5 * (high[0] - low[0]), half_y_m = 0.5 * (high[1] - low[1]);
+    const double half_z_m = 0.5 * (high[2] - low[2]);
+    const auto upright = [&](double radius_m) {
+      s_ << "cylinder { ";
+      s_.point(0.0, 0.0, -half_z_m) << ", ";
+      s_.point(0.0, 0.0, half_z_m) << ", " << radius_m;
+    };
+    const auto box = [&](double left_m) {
+      s_ << "box { ";
+      s_.point(-half_x_m, left_m, -half_z_m) << ", ";
+      s_.point(half_x_m, half_y_m, half_z_m);
+    };
+    s_ << "  ";
+    if (link.shape == "cylinder" && half_y_m < half_x_m) {
+      s_ << "intersection { ";
+      upright(half_x_m);
+      s_ << " } ";
+      box(-half_y_m);
+      s_ << " }";
+    } else if (link.shape == "cylinder") {
+      upright(half_x_m);
+    } else if (link.shape == "ring") {
+      s_ << "difference { ";
+      upright(half_x_m);
+      s_ << " } cylinder { ";
+      s_.point(0.0, 0.0, -2.0 * half_z_m) << ", ";
+      s_.point(0.0, 0.0, 2.0 * half_z_m) << ", " << 0.88 * half_x_m << " }";
+    } else if (link.shape == "wheel") {
+      s_ << "cylinder { ";
+      s_.point(0.0, -half_y_m, 0.0) << ", ";
+      s_.point(0.0, half_y_m, 0.0) << ", " << half_x_m;
+    } else if (link.shape == "ball") {
+      s_ << "sphere { 0, 1 scale ";
+      s_.point(half_x_m, half_y_m, half_z_m);
+    } else if (link.shape == "shield" || link.shape == "arrow") {
+      outline(link.shape, half_x_m, half_y_m, half_z_m);
+    } else {
+      box(-half_y_m);
+    }
+    s_ << " pigment { ";
+    if (holds)
+      s_ << "srgb 0.15";
+    else
+      s_.color(link.color.empty() ? std::string_view(body_colors(kind).fill) : std::string_view(link.color));
+    s_ << " } finish { Body } rotate -y*" << degrees(link.turned_rad) << " translate ";
+    s_.point(x_m, y_m, z_m);
+  }
+
+  /// A prism: flat behind and an arc ahead, or an arrow.
+  void outline(std::string_view shape, double half_x_m, double half_y_m, double half_z_m) {
+    std::vector<std::pair<double, double>> corners = {{-half_x_m, -half_y_m}};
+    if (shape == "arrow") {
+      corners.insert(corners.end(), {{half_x_m, 0.0}, {-half_x_m, half_y_m}, {-0.5 * half_x_m, 0.0}});
+    } else {
+      for (int i = -6; i <= 6; ++i)
+        corners.emplace_back(half_x_m - 0.4 * half_y_m * (i / 6.0) * (i / 6.0), half_y_m * i / 6.0);
+      corners.emplace_back(-half_x_m, half_y_m);
+    }
+    s_ << "prism { linear_spline " << -half_z_m << ", " << half_z_m << ", " << static_cast<double>(corners.size() + 1);
+    corners.push_back(corners.front());
+    for (const auto& [x_m, y_m] : corners) s_ << ", <" << x_m << ", " << y_m << ">";
   }
 
   /// As the joints do that it sits on, the nearest first.
@@ -311,9 +364,11 @@ class Writer {
 
   void lamp(const Drawing::Robot& r, const Drawing::Kind& kind, const Drawing::LitLamp& lit) {
     const hal::Appearance::Lamp& mount = kind.look.lamps[lit.lamp];
-    const double size_m = 0.13 * kind.radius_m;
-    s_ << "  union { sphere { 0, " << size_m << " pigment { ";
-    s_.color(lit.color) << " } finish { Glow } } translate ";
+    const bool beacon = std::hypot(mount.at_m[0], mount.at_m[1]) < 1e-6;  // it shines to all sides
+    const double wide_m = (beacon ? 0.42 : 0.1) * kind.radius_m, high_m = (beacon ? 0.09 : 0.1) * kind.radius_m;
+    s_ << "  sphere { 0, 1 scale ";
+    s_.point(wide_m, wide_m, high_m) << " pigment { ";
+    s_.color(lit.color) << " } finish { Glow } translate ";
     s_.point(mount.at_m[0], mount.at_m[1], mount.at_m[2] > 0.0 ? mount.at_m[2] : 0.6 * body_height_m(kind));
     moved(r, kind, mount.joint);
     s_ << " }\n";

@@ -10,11 +10,13 @@ namespace {
 
 constexpr double kTinyRobot_px = 2.0;
 constexpr std::size_t kDotsPerPath = 2'000;  // viewers slow down on longer ones
-constexpr std::array<BodyColors, 5> kBodyColors = {{{"#b9dcae", "#3c6e33"},
-                                                    {"#aecbe8", "#2c5a8c"},
-                                                    {"#d9c3e6", "#6b4587"},
-                                                    {"#f0d9a8", "#8a6414"},
-                                                    {"#b8dfdd", "#2b6d6a"}}};
+/// The colours of kinds in the window [Okabe and Ito 2008], lighter within and darker at the edge.
+constexpr std::array<BodyColors, 6> kBodyColors = {{{"#9fd3f2", "#1f6f9f"},
+                                                    {"#8fd6bf", "#00664b"},
+                                                    {"#e5b8d2", "#8d4a72"},
+                                                    {"#f6cf7f", "#8f6200"},
+                                                    {"#8fc1e3", "#004a75"},
+                                                    {"#cccccc", "#5c5c5c"}}};
 
 /// One robot with all that sits on it.
 class Pieces {
@@ -26,7 +28,9 @@ class Pieces {
     Svg place;
     place << "translate(" << r_.x_m << " " << r_.y_m << ") rotate(" << degrees(r_.heading_rad) << ")";
     const std::string use = "<use href=\"#kind" + std::to_string(r_.kind) + "\"", transform = place.take();
-    if (r_.lights == 0 && !r_.halted && look_.links.empty()) return use + " transform=\"" + transform + "\"/>\n";
+    const auto fine = [](const hal::Appearance::Link& link) { return link.fine; };
+    if (r_.lights == 0 && !r_.halted && std::all_of(look_.links.begin(), look_.links.end(), fine))
+      return use + " transform=\"" + transform + "\"/>\n";
     svg_ << "<g transform=\"" << transform << "\">" << use << "/>";
     on(hal::Appearance::kBody);
     if (r_.halted) svg_ << halted_mark(kind_.radius_m);
@@ -42,7 +46,7 @@ class Pieces {
     std::size_t held = look_.joints.size();
     for (const hal::Appearance::Link& link : look_.links) {
       const bool holds = !link.held.row.empty() && value(held++) != 0.0;
-      if (link.joint == joint) this->link(link, holds);
+      if (link.joint == joint && !link.fine) this->link(link, holds);
     }
     for (int next = joint + 1; next < static_cast<int>(look_.joints.size()); ++next) {
       if (look_.joints[static_cast<std::size_t>(next)].parent == joint) moved(next);
@@ -57,8 +61,9 @@ class Pieces {
   void moved(int number) {
     const hal::Appearance::Joint& joint = look_.joints[static_cast<std::size_t>(number)];
     const double by = joint.scale * value(static_cast<std::size_t>(number));
-    const bool carries = std::any_of(look_.links.begin(), look_.links.end(),
-                                     [number](const hal::Appearance::Link& link) { return link.joint == number; });
+    const bool carries =
+        std::any_of(look_.links.begin(), look_.links.end(),
+                    [number](const hal::Appearance::Link& link) { return link.joint == number && !link.fine; });
     if (!carries && by == 0.0) return on(number);
     svg_ << "<g class=\"" << escaped(joint.name) << "\" transform=\"";
     if (joint.slides) {

@@ -33,6 +33,13 @@ struct OmniCameraPart {
     v.number("omnidirectional_camera_aperture", aperture_rad, unit::deg, kLensAngles_rad,
              "From straight down to the farthest that the omnidirectional camera sees on the ground.");
   }
+  /// A clear tube on the body, which carries a mirror.
+  void appear(const RobotKind& kind, Appearance& look) const {
+    const double r = kind.body.radius_m, foot_m = 0.9 * std::min(height_m, kind.body.height_m);
+    const double mirror_m = height_m - 0.12 * r;
+    look.links.push_back(round_piece("cylinder", "#cfdfe6", 0.0, 0.0, 0.27 * r, foot_m, mirror_m));
+    look.links.push_back(round_piece("cylinder", "#30353c", 0.0, 0.0, 0.34 * r, mirror_m, height_m + 0.12 * r));
+  }
 };
 
 /// Blobs seen by a camera that looks all around, nearest first; the farthest are dropped when there are more than
@@ -153,6 +160,12 @@ struct CameraPart {
     v.number(attributes_begin + "_focal_length", focal_length_m, unit::m, {1e-6, 10.0},
              "Of its lens; its image is as large as the aperture then needs, so that pixels do not depend on it.");
     v.number(attributes_begin + "_range", range_m, unit::m, {1e-6, 1e6}, "Up to which it makes out LEDs.");
+  }
+  /// A dark ball.
+  void appear(const RobotKind& kind, Appearance& look) const {
+    const double lens_m = 0.09 * kind.body.radius_m;
+    look.links.push_back(
+        round_piece("ball", "#14171b", mount().x_m, 0.0, lens_m, mount().z_m - lens_m, mount().z_m + lens_m));
   }
 };
 

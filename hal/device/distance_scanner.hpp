@@ -48,6 +48,11 @@ struct ScannerPart {
     const bool any = std::any_of(heads.begin(), heads.end(), blind);
     return any ? "has a head that measures no distance; give each a min below its max" : "";
   }
+  /// A dark drum.
+  void appear(const RobotKind& kind, Appearance& look) const {
+    const double r = kind.body.radius_m, half_m = 0.1 * r;
+    look.links.push_back(round_piece("cylinder", "#2b2f35", 0.0, 0.0, 0.55 * r, height_m - half_m, height_m + half_m));
+  }
 };
 
 /// Drive mode of a scanner. The numbers are part of the port.

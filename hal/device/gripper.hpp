@@ -23,12 +23,14 @@ struct GripperPart {
   }
   void appear(const RobotKind& kind, Appearance& look) const {
     const double r = kind.body.radius_m, h = kind.body.height_m, half_m = 0.16 * r;
+    const double low_m = height_m > 0.0 ? height_m - 0.08 * h : 0.3 * h;
     constexpr double kNothing = 0xFFFF'FFFFU;  // is held: the number of no joint
     look.links.push_back({.name = "gripper",
                           .shape = "fork",
-                          .low_m = {0.72 * r, -half_m, 0.3 * h},
-                          .high_m = {r + reach_m, half_m, 0.45 * h},
+                          .low_m = {0.72 * r, -half_m, low_m},
+                          .high_m = {r + reach_m, half_m, low_m + 0.15 * h},
                           .on = "turret",
+                          .color = "#ffffff",
                           .held = {"gripper", "joint", 0, true, kNothing}});
   }
 };

@@ -97,6 +97,12 @@ struct UpperLedsPart {
     v.text("source", source, "Where these figures come from.");
   }
   std::string flaw() const { return mounts_flaw(mounts, UpperRingLeds::kCapacity); }
+  void appear(const RobotKind&, Appearance& look) const {
+    for (std::size_t i = 0; i < mounts.size(); ++i)
+      look.lamps.push_back({{mounts[i].x_m, mounts[i].y_m, mounts[i].z_m},
+                            "",
+                            Driver{"actuator upper_leds", "rgb", static_cast<std::int64_t>(3 * i)}});
+  }
 };
 
 /// The light beside an eye-bot's camera. Safe value: off.
@@ -132,6 +138,9 @@ struct BodyLed : Command {
 struct BodyLedPart : MountedLamp {
   static constexpr std::string_view kName = "body_led";
   static constexpr std::string_view kDoc = "A light inside the translucent body.";
+  void appear(const RobotKind&, Appearance& look) const {
+    look.lamps.push_back({{mount.x_m, mount.y_m, mount.z_m}, "", Driver{"actuator body_led", "on"}, "#3ddc5a"});
+  }
 };
 
 /// The bright red light at an e-puck's front. Safe value: off.
@@ -147,6 +156,9 @@ struct FrontLed : Command {
 struct FrontLedPart : MountedLamp {
   static constexpr std::string_view kName = "front_led";
   static constexpr std::string_view kDoc = "A bright light at the front.";
+  void appear(const RobotKind&, Appearance& look) const {
+    look.lamps.push_back({{mount.x_m, mount.y_m, mount.z_m}, "", Driver{"actuator front_led", "on"}, "#ff3b1f"});
+  }
 };
 
 }  // namespace tandem::hal

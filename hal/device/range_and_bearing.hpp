@@ -35,6 +35,11 @@ struct RangeAndBearingPart {
     v.integer("rab_data_size", payload, {0, static_cast<double>(kRabPayloadMax)},
               "Bytes of a range-and-bearing message.");
   }
+  /// A board.
+  void appear(const RobotKind& kind, Appearance& look) const {
+    const double r = kind.body.radius_m;
+    look.links.push_back(round_piece("cylinder", "#1f6b45", 0.0, 0.0, 0.6 * r, height_m - 0.05 * r, height_m));
+  }
 };
 
 /// Message to broadcast in this tick. Safe value: nothing.

@@ -1,6 +1,7 @@
 // Sensors that sit in a ring around the body: infrared proximity, ambient light, ground reflectance.
 // Which sensor looks where is in the part of the robot (`robot.part<ProximityPart>().mounts`), in the same order.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -64,6 +65,12 @@ struct ProximityPart {
                " is not farther, with fewer counts, than the one before; give the nearest first";
     }
     return mounts_flaw(mounts, Proximity::kCapacity);
+  }
+  /// A dark bead each.
+  void appear(const RobotKind& kind, Appearance& look) const {
+    const double bead_m = std::clamp(0.05 * kind.body.radius_m, 0.001, 0.006);
+    for (const Mount& m : mounts)
+      look.links.push_back(round_piece("ball", "#121417", m.x_m, m.y_m, bead_m, m.z_m - bead_m, m.z_m + bead_m));
   }
 };
 

@@ -37,6 +37,12 @@ struct TimeOfFlightPart {
     v.number("cone", cone_rad, unit::deg, {0.0, 3.0}, "Angle from one side of its cone to the other.");
     v.text("source", source, "Where these figures come from.");
   }
+  /// A dark bead.
+  void appear(const RobotKind& kind, Appearance& look) const {
+    const double bead_m = 0.08 * kind.body.radius_m;
+    look.links.push_back(
+        round_piece("ball", "#121417", mount.x_m, mount.y_m, bead_m, mount.z_m - bead_m, mount.z_m + bead_m));
+  }
 };
 
 }  // namespace tandem::hal

@@ -10,6 +10,7 @@
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/steppers.hpp"
+#include "hal/robot/shell.hpp"
 
 namespace tandem::hal::epuck {
 namespace {
@@ -105,10 +106,39 @@ RobotKind make() {
   kind.add(LedsPart{.mounts = ring_leds(), .source = "GCtronic's library; height rounded"});
   kind.add(BodyLedPart{{.mount = {0, 0, 0, 0.03}, .source = "GCtronic's library; height rounded"}});
   kind.add(FrontLedPart{{.mount = on_rim(0, 1, 0, kRadius_m, 0.03), .source = "GCtronic's library; height rounded"}});
+  kind.add(ShellPart{.of = std::string(kName), .source = "chosen after photographs; sizes as of body and wheels"});
   return kind;
 }
 
 }  // namespace
+
+/// A milky body between two wheels, on it the green ring of the main board with its light guide, a speaker, a selector
+/// and the board on posts above them.
+LookPart shell() {
+  constexpr std::string_view kMilk = "#e4e7e2", kBoard = "#1d7a44", kDark = "#202429", kTyre = "#2a2e33";
+  LookPart look{.whole = true};
+  std::vector<Appearance::Link>& all = look.links;
+  all.push_back(piece("cylinder", kMilk, {-0.0335, -0.0225, 0.006}, {0.0335, 0.0225, 0.0375}));
+  all.push_back(piece("box", "#c9ccc8", {-0.02, -0.0235, 0.003}, {0.02, 0.0235, 0.012}));
+  for (const double y_m : {0.0265, -0.0265}) {
+    all.push_back(piece("wheel", kTyre, {-kWheelRadius_m, y_m - 0.003, 0.0}, {kWheelRadius_m, y_m + 0.003, 0.041}));
+    all.push_back(piece("wheel", "#8fce5a", {-0.015, y_m - 0.0035, 0.0055}, {0.015, y_m + 0.0035, 0.0355}));
+  }
+  all.push_back(round_piece("cylinder", kBoard, 0.0, 0.0, kRadius_m, 0.0405, 0.0425));
+  all.push_back(round_piece("ring", "#f3f5f2", 0.0, 0.0, 0.0345, 0.0375, 0.0405));
+  all.push_back(piece("box", kDark, {0.028, -0.006, 0.02}, {0.0345, 0.006, 0.031}));      // camera
+  all.push_back(round_piece("cylinder", "#b9bec4", 0.033, 0.0, 0.0035, 0.0235, 0.0275));  // its lens
+  all.push_back(round_piece("cylinder", kDark, -0.006, 0.0, 0.0115, 0.0425, 0.05));       // speaker
+  all.push_back(round_piece("cylinder", "#d8b23a", 0.017, 0.013, 0.004, 0.0425, 0.048));  // selector
+  all.push_back(piece("box", "#f0c83c", {-0.028, -0.012, 0.0425}, {-0.02, 0.012, 0.049}));
+  for (const double x_m : {0.019, -0.019}) {
+    for (const double y_m : {0.019, -0.019})
+      all.push_back(round_piece("cylinder", "#c7a64a", x_m, y_m, 0.0018, 0.0425, 0.082));
+  }
+  all.push_back(round_piece("cylinder", kBoard, 0.0, 0.0, 0.03, 0.0815, 0.0835));
+  all.push_back(piece("arrow", "#f3f5f2", {-0.01, -0.011, 0.0861}, {0.022, 0.011, 0.0866}));
+  return look;
+}
 
 const RobotKind& kind() {
   static const RobotKind made = make();

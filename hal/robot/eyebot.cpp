@@ -13,6 +13,7 @@
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/robot/ring.hpp"
+#include "hal/robot/shell.hpp"
 
 namespace tandem::hal::eyebot {
 namespace {
@@ -89,10 +90,43 @@ RobotKind make() {
   kind.add(HeadPart{.turn_rad_s = kPi,
                     .max_tilt_rad = 0.5 * kPi,
                     .source = "tilt: ARGoS 3, from straight down to level; turn: chosen, half a turn a second"});
+  kind.add(ShellPart{.of = std::string(kName), .source = "chosen after photographs; sizes as of body and rotors"});
   return kind;
 }
 
 }  // namespace
+
+/// A ring of carbon that carries LEDs and sensors, two rotors above each other at the end of each arm, a core that
+/// hangs between them, and the mast that holds on to the ceiling.
+LookPart shell() {
+  constexpr std::string_view kCarbon = "#2b3036", kBlade = "#a9b3bf";
+  constexpr double kArm_m = 0.2, kRotor_m = 0.092;
+  LookPart look{.whole = true};
+  std::vector<Appearance::Link>& all = look.links;
+  all.push_back(round_piece("ring", kCarbon, 0.0, 0.0, kRadius_m, 0.148, 0.169));
+  for (const double turned_deg : {0.0, 45.0, 90.0, 135.0}) {
+    all.push_back(piece("box", kCarbon, {-kRadius_m + 0.005, -0.005, 0.154}, {kRadius_m - 0.005, 0.005, 0.164}));
+    all.back().turned_rad = turned_deg * (kPi / 180.0);
+  }
+  for (const double x_m : {kArm_m * 0.70710678, -kArm_m * 0.70710678}) {
+    for (const double y_m : {kArm_m * 0.70710678, -kArm_m * 0.70710678}) {
+      all.push_back(round_piece("cylinder", "#15181c", x_m, y_m, 0.014, 0.1, 0.22));  // motors
+      for (const double z_m : {0.105, 0.212})
+        all.push_back(round_piece("cylinder", x_m > 0.0 ? "#d9705f" : kBlade, x_m, y_m, kRotor_m, z_m, z_m + 0.004));
+    }
+  }
+  all.push_back(round_piece("cylinder", "#e3e6ea", 0.0, 0.0, 0.055, 0.04, 0.25));
+  all.push_back(round_piece("cylinder", "#1f6b45", 0.0, 0.0, 0.07, 0.25, 0.256));
+  all.push_back(round_piece("cylinder", "#59616c", 0.0, 0.0, 0.035, 0.256, 0.33));
+  all.push_back(round_piece("cylinder", "#7a838e", 0.0, 0.0, 0.009, 0.33, 0.55));
+  all.push_back(round_piece("cylinder", kCarbon, 0.0, 0.0, 0.032, 0.55, 0.566));
+  all.push_back(piece("box", "#d9705f", {0.045, -0.02, 0.19}, {0.06, 0.02, 0.235}));  // the front
+  for (const double x_m : {0.05, -0.05}) {
+    for (const double y_m : {0.05, -0.05})
+      all.push_back(round_piece("cylinder", kCarbon, x_m, y_m, 0.004, 0.0, 0.1));  // legs
+  }
+  return look;
+}
 
 const RobotKind& kind() {
   static const RobotKind made = make();

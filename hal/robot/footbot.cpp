@@ -3,6 +3,7 @@
 #include "hal/robot/footbot.hpp"
 
 #include <numbers>
+#include <utility>
 
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/brakes.hpp"
@@ -14,6 +15,7 @@
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/turret.hpp"
 #include "hal/robot/ring.hpp"
+#include "hal/robot/shell.hpp"
 
 namespace tandem::hal::footbot {
 namespace {
@@ -105,10 +107,40 @@ RobotKind make() {
                       .source =
                           "aperture: ARGoS 3; chosen: focal length of a common lens (pixels do not depend on it), "
                           "range (an LED is then seen at about one pixel), VGA as small cameras of its time have"});
+  kind.add(ShellPart{.of = std::string(kName), .source = "chosen after photographs; sizes as of body and treels"});
   return kind;
 }
 
 }  // namespace
+
+/// Tracks beside a dark base, a belt of sensors, the ring that turns with gripper and LEDs, and a tower of boards.
+LookPart shell() {
+  constexpr std::string_view kDark = "#24282e", kTrack = "#2f3339", kPale = "#d5d9dd";
+  LookPart look{.upper = "turret", .whole = true};
+  std::vector<Appearance::Link>& all = look.links;
+  for (const double y_m : {0.5 * kWheelBase_m, -0.5 * kWheelBase_m}) {
+    all.push_back(piece("box", kTrack, {-0.045, y_m - 0.011, 0.004}, {0.045, y_m + 0.011, 0.05}));
+    for (const double x_m : {0.045, -0.045})
+      all.push_back(piece("wheel", kTrack, {x_m - 0.024, y_m - 0.011, 0.002}, {x_m + 0.024, y_m + 0.011, 0.05}));
+    all.push_back(piece("wheel", "#9aa1aa", {-0.029, y_m - 0.013, 0.0}, {0.029, y_m + 0.013, 0.058}));
+  }
+  all.push_back(piece("cylinder", "#4a515a", {-0.078, -0.056, 0.012}, {0.078, 0.056, 0.055}));
+  all.push_back(round_piece("cylinder", kDark, 0.0, 0.0, kRadius_m, 0.052, 0.069));
+  const auto turns = [&all](Appearance::Link link) {
+    link.on = "turret";
+    all.push_back(std::move(link));
+  };
+  turns(round_piece("cylinder", kPale, 0.0, 0.0, 0.0845, 0.0715, 0.0965));
+  turns(round_piece("ring", "#f6f7f5", 0.0, 0.0, 0.0875, 0.08, 0.09));
+  turns(piece("box", "#8b939d", {0.06, -0.02, 0.074}, {0.0895, 0.02, 0.095}));
+  all.push_back(round_piece("cylinder", "#1f6b45", 0.0, 0.0, 0.07, 0.1, 0.103));
+  all.push_back(round_piece("cylinder", "#6d7680", 0.0, 0.0, 0.055, 0.103, 0.135));
+  all.push_back(round_piece("cylinder", "#1f6b45", 0.0, 0.0, 0.066, 0.1355, 0.1385));
+  all.push_back(round_piece("cylinder", "#e8eaec", 0.0, 0.0, 0.05, 0.1385, 0.1469));
+  all.push_back(piece("arrow", kDark, {0.026, -0.02, 0.147}, {0.049, 0.02, 0.1485}));
+  all.push_back(round_piece("cylinder", "#f6f7f5", 0.0, 0.0, 0.03, 0.147, kBeaconHeight_m));
+  return look;
+}
 
 const RobotKind& kind() {
   static const RobotKind made = make();

@@ -4,6 +4,7 @@
 #include "hal/robot/epuck2.hpp"
 #include "hal/robot/eyebot.hpp"
 #include "hal/robot/footbot.hpp"
+#include "hal/robot/shell.hpp"
 #include "hal/robot/thymio.hpp"
 
 namespace tandem::hal {
@@ -11,6 +12,7 @@ namespace tandem::hal {
 void register_robots(Registrar& registrar) {
   for (const RobotKind* kind : {&epuck::kind(), &epuck2::kind(), &eyebot::kind(), &footbot::kind(), &thymio::kind()})
     registrar.add(*kind);
+  registrar.add(part_type<ShellPart>());
 }
 
 }  // namespace tandem::hal

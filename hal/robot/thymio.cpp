@@ -5,6 +5,7 @@
 #include "hal/robot/thymio.hpp"
 
 #include <numbers>
+#include <utility>
 
 #include "hal/angle.hpp"
 #include "hal/device/body_sensors.hpp"
@@ -14,6 +15,7 @@
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/speaker.hpp"
 #include "hal/robot/ring.hpp"
+#include "hal/robot/shell.hpp"
 
 namespace tandem::hal::thymio {
 namespace {
@@ -92,10 +94,51 @@ RobotKind make() {
                     .source =
                         "API: eight in a circle around the buttons (yellow alone), clockwise from the front; below "
                         "left, below right, on top (all colours); places: Enki's pictures, rounded"});
+  kind.add(ShellPart{.of = std::string(kName), .source = "chosen after photographs; outline: Enki"});
   return kind;
 }
 
 }  // namespace
+
+/// A white box, flat behind and round ahead, with five buttons, studs for bricks, a hole for a pen, and dark windows
+/// before its sensors.
+LookPart shell() {
+  constexpr std::string_view kWhite = "#f4f5f2", kPale = "#b9bfc6", kDark = "#1c1f23";
+  constexpr double kTop_m = kHeight_m - 0.001;
+  LookPart look{.whole = true};
+  std::vector<Appearance::Link>& all = look.links;
+  all.push_back(piece("shield", kWhite, {-0.03, -0.055, 0.008}, {0.08, 0.055, kTop_m}));
+  all.push_back(piece("shield", "#d9dcd8", {-0.028, -0.053, 0.004}, {0.077, 0.053, 0.008}));
+  for (const double side : {1.0, -1.0}) {
+    const double y_m = 0.5 * side * kWheelBase_m;
+    all.push_back(piece("wheel", "#3a3e44", {-0.022, y_m - 0.0095, 0.0}, {0.022, y_m + 0.0095, 0.044}));
+    all.push_back(piece("box", kDark, {-0.024, side * 0.0505 - 0.005, 0.003}, {0.024, side * 0.0505 + 0.005, 0.03}));
+    all.push_back(
+        piece("wheel", "#dfe2e0", {-0.02, side * 0.0558 - 0.001, 0.002}, {0.02, side * 0.0558 + 0.001, 0.042}));
+    all.push_back(
+        piece("wheel", "#3a3e44", {-0.007, side * 0.0568 - 0.001, 0.015}, {0.007, side * 0.0568 + 0.001, 0.029}));
+  }
+  for (const auto& [x_m, y_m] : {std::pair{0.014, 0.0}, {-0.014, 0.0}, {0.0, 0.014}, {0.0, -0.014}}) {
+    all.push_back(piece("arrow", kPale, {kButtons_m + x_m - 0.0055, y_m - 0.006, kTop_m},
+                        {kButtons_m + x_m + 0.0055, y_m + 0.006, kTop_m + 0.0015}));
+    all.back().turned_rad = x_m > 0.0   ? 0.0
+                            : x_m < 0.0 ? std::numbers::pi
+                            : y_m > 0.0 ? 0.5 * std::numbers::pi
+                                        : -0.5 * std::numbers::pi;
+  }
+  all.push_back(round_piece("cylinder", kPale, kButtons_m, 0.0, 0.005, kTop_m, kTop_m + 0.0015));
+  all.push_back(round_piece("cylinder", kDark, 0.0, 0.0, 0.0055, kTop_m - 0.001, kTop_m + 0.0004));  // for a pen
+  for (const double x_m : {-0.022, -0.014}) {
+    for (const double y_m : {0.044, 0.036, -0.036, -0.044})
+      all.push_back(round_piece("cylinder", kWhite, x_m, y_m, 0.0025, kTop_m, kTop_m + 0.002));
+  }
+  for (const Mount& m : infrared()) {
+    all.push_back(piece("box", kDark, {m.x_m - 0.002, m.y_m - 0.007, m.z_m - 0.005},
+                        {m.x_m + 0.0015, m.y_m + 0.007, m.z_m + 0.005}));
+    all.back().turned_rad = m.bearing_rad;
+  }
+  return look;
+}
 
 const RobotKind& kind() {
   static const RobotKind made = make();

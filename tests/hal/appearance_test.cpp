@@ -1,5 +1,6 @@
 #include "hal/appearance.hpp"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 #include "hal/element.hpp"
@@ -45,6 +46,36 @@ TEST(Appearance, OfAFootBotIsThatOfItsParts) {
   ASSERT_EQ(look.drivers().size(), 2U);
   EXPECT_EQ(look.drivers()[0]->row, "turret");
   EXPECT_TRUE(look.drivers()[1]->as_switch) << "whether the gripper holds something";
+}
+
+TEST(Appearance, OfAKindThatSaysNothingIsADrumOnItsWheels) {
+  RobotKind kind;
+  kind.body = {.radius_m = 0.1, .height_m = 0.08, .mass_kg = 1.0};
+  kind.locomotion = DifferentialDrive{.wheel_radius_m = 0.03, .wheel_base_m = 0.16};
+  const Appearance look = appearance_of(kind);
+  EXPECT_TRUE(look.whole);
+  double wheels_left_m = 0.0, wheels_right_m = 0.0, hull_m = 1.0;
+  for (const Appearance::Link& link : look.links) {
+    EXPECT_TRUE(link.fine) << "pictures from above have a symbol";
+    if (link.shape == "wheel") {
+      EXPECT_EQ(link.low_m[2], 0.0);
+      EXPECT_DOUBLE_EQ(link.high_m[2], 0.06);
+      const double y_m = 0.5 * (link.low_m[1] + link.high_m[1]);
+      (y_m > 0.0 ? wheels_left_m : wheels_right_m) = y_m;
+    } else if (link.low_m[2] < 0.03) {
+      hull_m = std::min(hull_m, link.high_m[1]);
+    }
+  }
+  EXPECT_DOUBLE_EQ(wheels_left_m, 0.08);
+  EXPECT_DOUBLE_EQ(wheels_right_m, -0.08);
+  EXPECT_LT(hull_m, 0.08) << "the wheels are seen";
+}
+
+TEST(Appearance, OfAKindWhoseLookIsWholeHasNothingElse) {
+  RobotKind kind;
+  kind.body = {.radius_m = 0.1, .height_m = 0.08, .mass_kg = 1.0};
+  kind.add(LookPart{.links = {{.name = "plate"}}, .whole = true});
+  EXPECT_EQ(appearance_of(kind).links.size(), 1U);
 }
 
 TEST(LookPart, IsReadFromAnElement) {
