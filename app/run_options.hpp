@@ -19,7 +19,7 @@ struct PictureRequest {
   std::int64_t size_px = 1000;   ///< of the longer side
   std::vector<double> region;    ///< x0, y0, x1, y1 in metres; empty: the whole arena
   double trails_s = 0.0;
-  bool axes = false, ids = false;
+  bool axes = false, ids = false, no_title = false, no_legend = false;
   std::vector<std::string> layers;  ///< over pictures and films
   std::string film;                 ///< .mp4, .mkv, or pictures: "FOLDER/" or "FOLDER/%06d.png"
   std::int64_t film_every = 1;      ///< ticks

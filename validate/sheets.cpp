@@ -53,19 +53,6 @@ std::vector<std::string> wrapped(const std::string& text, double most_px, double
   return lines;
 }
 
-std::string base64(const std::string& bytes) {
-  constexpr const char* kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t three = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      three = (three << 8U) | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-    for (std::size_t k = 0; k < 4; ++k)
-      out += i + k > bytes.size() ? '=' : kLetters[(three >> (18U - 6U * static_cast<unsigned>(k))) & 63U];
-  }
-  return out;
-}
-
 /// A row of a table, broken into lines.
 struct Cells {
   std::vector<std::vector<std::string>> columns;
@@ -183,7 +170,7 @@ class Sheets {
     const double top = y_;
     body_ +=
         fmt::format("<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" href=\"data:image/svg+xml;base64,{}\"/>\n", x,
-                    y_, kFigure_px, kFigure_px * 0.75, base64(svg));
+                    y_, kFigure_px, kFigure_px * 0.75, hal::base64(svg));
     y_ += kFigure_px * 0.75 + 2.0;
     for (const std::string& line : caption) {
       put(x, line, kFont_px, false, "#444");

@@ -70,6 +70,8 @@ void describe_looks(hal::CommandLine& line, PictureRequest& o) {
   line.option("--picture-trails", o.trails_s, "Where robots were in so many seconds before").not_negative();
   line.flag("--picture-axes", o.axes, "Coordinates along the frame");
   line.flag("--picture-ids", o.ids, "The id beside every robot");
+  line.flag("--picture-no-title", o.no_title, "Without the line above");
+  line.flag("--picture-no-legend", o.no_legend, "Without scale and legend");
   line.option("--picture-layers", o.layers, "Layers over pictures and films: `tandem list layers`")
       .separated()
       .named_in("layer");

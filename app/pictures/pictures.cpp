@@ -69,6 +69,8 @@ hal::Result<core::PictureLook> look_of(const PictureRequest& request, const core
   look.size_px = static_cast<int>(request.size_px);
   look.trails_s = request.trails_s;
   look.axes = request.axes;
+  look.title = !request.no_title;
+  look.legend = !request.no_legend;
   look.ids = request.ids;
   if (request.region.empty()) return look;
   const core::PictureLook::Area region{request.region.at(0), request.region.at(1), request.region.at(2),

@@ -3,6 +3,7 @@
 
 #include "core/view/drawing.hpp"
 #include "core/view/svg_floor.hpp"
+#include "core/view/svg_legend.hpp"
 #include "core/view/svg_robots.hpp"
 #include "hal/unit.hpp"
 
@@ -11,37 +12,18 @@ namespace {
 
 constexpr std::size_t kFullDetailRobots = 20'000;
 constexpr double kMargin_px = 28.0;
-constexpr double kHeader_px = 52.0;
 constexpr double kLine_px = 30.0;   // of the legend
 constexpr double kLetter_px = 7.4;  // mean width in the font used
 
-constexpr double kAxisLine_px = 24.0;   // beneath the frame
-constexpr double kAxisWidth_px = 46.0;  // at its left
+constexpr double kAxisLine_px = 42.0;   // beneath the frame
+constexpr double kAxisWidth_px = 62.0;  // at its left
+constexpr std::ptrdiff_t kMostHeights = 100;
 constexpr std::string_view kInk = "#22272e";
 constexpr std::string_view kFaintInk = "#68707b";
-constexpr std::string_view kRealColor = "#e8590c";
-constexpr std::string_view kWallColor = "#59626e";
 constexpr std::string_view kWallEdge = "#3f4751";
-constexpr std::string_view kMovableColor = "#d8b384";
 constexpr std::string_view kMovableEdge = "#7d5a2b";
-constexpr std::string_view kBorderColor = "#3b5bdb";
-
-/// "10,000"
-std::string grouped(std::size_t n) {
-  std::string digits = std::to_string(n);
-  for (std::ptrdiff_t i = static_cast<std::ptrdiff_t>(digits.size()) - 3; i > 0; i -= 3)
-    digits.insert(static_cast<std::size_t>(i), ",");
-  return digits;
-}
 
 using Area = PictureLook::Area;
-
-/// One entry of the legend: a symbol of at most 18 px around its place, and a text.
-struct LegendEntry {
-  std::string symbol;
-  std::string text;
-  double width_px() const { return 26.0 + kLetter_px * static_cast<double>(text.size()) + 22.0; }
-};
 
 class Page {
  public:
@@ -52,15 +34,17 @@ class Page {
     px_per_m_ = look.size_px / std::max(width_m, depth_m);
     arena_w_px_ = width_m * px_per_m_;
     arena_h_px_ = depth_m * px_per_m_;
+    head_px_ = look.title ? 52.0 : kMargin_px;
     if (look.axes) axis_px_ = kAxisLine_px;
     const double beside_px = look.axes ? kAxisWidth_px : 0.0;
     width_px_ = std::max(arena_w_px_ + beside_px, 420.0) + 2.0 * kMargin_px;
     left_px_ = beside_px + 0.5 * (width_px_ - beside_px - arena_w_px_);
-    lay_out_legend();
+    if (look.legend) lay_out_legend();
   }
 
   double height_px() const {
     if (look_.height_px > 0) return look_.height_px;
+    if (!look_.legend) return bottom_px() + (look_.axes ? 6.0 : kMargin_px);
     return bottom_px() + 52.0 + kLine_px * static_cast<double>(legend_lines_) + 8.0;
   }
 
@@ -68,10 +52,10 @@ class Page {
     header();
     definitions();
     svg_ << "<g transform=\"translate(" << left_px_ - shown_.min_x_m * px_per_m_ << " "
-         << kHeader_px + shown_.max_y_m * px_per_m_ << ") scale(" << px_per_m_ << " " << -px_per_m_ << ")\">\n";
+         << head_px_ + shown_.max_y_m * px_per_m_ << ") scale(" << px_per_m_ << " " << -px_per_m_ << ")\">\n";
     svg_ << "<g clip-path=\"url(#arena)\">\n";
     arena();
-    svg_ << floor_shades(d_, look_);
+    svg_ << floor_picture(d_, look_);
     borders();
     areas();
     lights();
@@ -88,8 +72,11 @@ class Page {
     area_labels();
     labels();
     sketch_texts();
-    scale_bar();
-    legend();
+    heights();
+    if (look_.legend) {
+      scale_bar();
+      legend();
+    }
     svg_ << "</svg>\n";
     return svg_.take();
   }
@@ -98,8 +85,8 @@ class Page {
   bool full_detail() const { return d_.robots.size() <= kFullDetailRobots; }
   double px(double pixels) const { return pixels / px_per_m_; }  // as metres
   double x_px(double x_m) const { return left_px_ + (x_m - shown_.min_x_m) * px_per_m_; }
-  double y_px(double y_m) const { return kHeader_px + (shown_.max_y_m - y_m) * px_per_m_; }
-  double bottom_px() const { return kHeader_px + arena_h_px_ + axis_px_; }
+  double y_px(double y_m) const { return head_px_ + (shown_.max_y_m - y_m) * px_per_m_; }
+  double bottom_px() const { return head_px_ + arena_h_px_ + axis_px_; }
   bool shows(double x_m, double y_m, double around_m) const {
     return !look_.region || (x_m + around_m >= shown_.min_x_m && x_m - around_m <= shown_.max_x_m &&
                              y_m + around_m >= shown_.min_y_m && y_m - around_m <= shown_.max_y_m);
@@ -118,6 +105,7 @@ class Page {
          << "\" font-family=\"DejaVu Sans, Helvetica, Arial, sans-serif\">\n";
     svg_ << "<title>" << escaped(d_.title) << "</title>\n";
     svg_ << "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
+    if (!look_.title) return;
     const double fitting =
         (width_px_ - 2.0 * kMargin_px) / (0.58 * std::max<double>(1.0, static_cast<double>(d_.title.size())));
     text(left_text_px(), 33.0, std::clamp(fitting, 9.0, 18.0), kInk, " font-weight=\"600\"", d_.title);
@@ -200,13 +188,8 @@ class Page {
     objects(true, "movables", kMovableColor, kMovableEdge);
   }
 
-  bool any_objects(bool movable) const {
-    const auto is = [movable](const auto& object) { return object.movable == movable; };
-    return std::any_of(d_.objects.begin(), d_.objects.end(), is);
-  }
-
   void objects(bool movable, std::string_view name, std::string_view fill, std::string_view edge) {
-    if (!any_objects(movable)) return;
+    if (!any_objects(d_, movable)) return;
     svg_ << "<g class=\"" << name << "\" fill=\"" << fill << "\" stroke=\"" << edge << "\" stroke-width=\"" << px(1.0)
          << "\">\n";
     for (const Object::Kind kind : {Object::Kind::Box, Object::Kind::Cylinder}) {
@@ -312,7 +295,7 @@ class Page {
   }
 
   void frame() {
-    svg_ << "<rect x=\"" << left_px_ << "\" y=\"" << kHeader_px << "\" width=\"" << arena_w_px_ << "\" height=\""
+    svg_ << "<rect x=\"" << left_px_ << "\" y=\"" << head_px_ << "\" width=\"" << arena_w_px_ << "\" height=\""
          << arena_h_px_ << "\" fill=\"none\" stroke=\"" << kInk << "\" stroke-width=\"1\"/>\n";
   }
 
@@ -326,7 +309,7 @@ class Page {
       for (double i = std::ceil((from_m - slack_m) / step_m); i * step_m <= to_m + slack_m; ++i)
         mark(i * step_m, hal::format_number(std::round(i * step_m * 1e9) / 1e9 + 0.0));
     };
-    const double bottom = kHeader_px + arena_h_px_;
+    const double bottom = head_px_ + arena_h_px_;
     svg_ << "<g class=\"axes\" stroke-width=\"1\">\n";
     each(shown_.min_x_m, shown_.max_x_m, [&](double x_m, const std::string& number) {
       svg_ << "<path stroke=\"" << kInk << "\" d=\"M" << x_px(x_m) << " " << bottom << "v6\"/>\n";
@@ -336,9 +319,11 @@ class Page {
       svg_ << "<path stroke=\"" << kInk << "\" d=\"M" << left_px_ << " " << y_px(y_m) << "h-6\"/>\n";
       text(left_px_ - 10.0, y_px(y_m) + 4.5, 12.0, kInk, " text-anchor=\"end\"", number);
     });
-    const std::string halo = " stroke=\"#ffffff\" stroke-width=\"3\" paint-order=\"stroke\"";
-    text(left_px_ + arena_w_px_ - 6.0, bottom - 7.0, 12.0, kInk, " text-anchor=\"end\"" + halo, "x in m");
-    text(left_px_ + 6.0, kHeader_px + 16.0, 12.0, kInk, halo, "y in m");
+    text(left_px_ + 0.5 * arena_w_px_, bottom + 37.0, 12.0, kInk, " text-anchor=\"middle\"", "x in m");
+    Svg turned;
+    turned << " text-anchor=\"middle\" transform=\"rotate(-90 " << left_px_ - 46.0 << " "
+           << head_px_ + 0.5 * arena_h_px_ << ")\"";
+    text(left_px_ - 46.0, head_px_ + 0.5 * arena_h_px_, 12.0, kInk, turned.take(), "y in m");
     svg_ << "</g>\n";
   }
 
@@ -355,6 +340,18 @@ class Page {
            " text-anchor=\"middle\" stroke=\"#ffffff\" stroke-width=\"2\" paint-order=\"stroke\"", d_.ids[i]);
     }
     svg_ << "</g>\n";
+  }
+
+  /// Beside robots that are in the air, unless they are too many.
+  void heights() {
+    const auto flies = [this](const Drawing::Robot& r) { return r.z_m > kInTheAir_m && shows(r); };
+    if (std::count_if(d_.robots.begin(), d_.robots.end(), flies) > kMostHeights) return;
+    for (const Drawing::Robot& r : d_.robots) {
+      if (!flies(r)) continue;
+      text(x_px(r.x_m), y_px(r.y_m) + d_.kinds[r.kind].radius_m * px_per_m_ + 12.0, 10.0, kFaintInk,
+           " class=\"height\" text-anchor=\"middle\" stroke=\"#ffffff\" stroke-width=\"2\" paint-order=\"stroke\"",
+           "z " + length_text(r.z_m));
+    }
   }
 
   void labels() {
@@ -385,46 +382,12 @@ class Page {
   }
 
   void lay_out_legend() {
-    std::vector<std::size_t> count(d_.kinds.size(), 0);
-    std::size_t halted = 0;
-    for (const Drawing::Robot& r : d_.robots) {
-      if (!shows(r)) continue;
-      ++count[r.kind];
-      halted += r.halted ? 1 : 0;
-    }
-    for (std::size_t k = 0; k < d_.kinds.size(); ++k) {
-      if (count[k] > 0)
-        add_entry(full_detail() ? robot_symbol(k, 8.0, 8.0) : dot_symbol(k),
-                  grouped(count[k]) + " × " + d_.kinds[k].name);
-    }
-    if (!d_.real.empty()) {
-      std::size_t troubled = 0;
-      for (const Drawing::RealRobot& real : d_.real) troubled += real.state.empty() ? 0 : 1;
-      add_entry(ring_symbol(kRealColor, ""), grouped(d_.real.size()) + " real");
-      if (troubled > 0)
-        add_entry(ring_symbol(kTroubleColor, " stroke-dasharray=\"4 3\""), grouped(troubled) + " real in trouble");
-    }
-    if (halted > 0) add_entry(halted_mark(9.0), grouped(halted) + " stopped");
-    if (!d_.lights.empty()) {
-      add_entry("<circle r=\"5\" fill=\"" + hex(d_.lights.front().color) + "\" stroke=\"#7a5c00\"/>",
-                grouped(d_.lights.size()) + " × light");
-    }
-    const std::string block = "<rect x=\"-8\" y=\"-6\" width=\"16\" height=\"12\" fill=\"";
-    if (any_objects(false)) add_entry(block + std::string(kWallColor) + "\"/>", "obstacle");
-    if (any_objects(true)) add_entry(block + std::string(kMovableColor) + "\"/>", "movable");
-    const auto is_wall = [](const Drawing::Border& b) { return b.wall; };
-    const std::string line = "<line x1=\"-9\" x2=\"9\" stroke=\"" + std::string(kBorderColor) + "\" stroke-width=\"2\"";
-    if (std::any_of(d_.borders.begin(), d_.borders.end(), is_wall)) add_entry(line + "/>", "wall of a region");
-    if (!std::all_of(d_.borders.begin(), d_.borders.end(), is_wall))
-      add_entry(line + " stroke-dasharray=\"5 4\"/>", "gate of a region");
+    for (LegendEntry& entry : legend_of(d_, look_, full_detail(), [this](const Drawing::Robot& r) { return shows(r); }))
+      add_entry(std::move(entry));
   }
-  static std::string ring_symbol(std::string_view color, std::string_view more) {
-    return "<circle r=\"7.5\" fill=\"none\" stroke=\"" + std::string(color) + "\" stroke-width=\"2.5\"" +
-           std::string(more) + "/>";
-  }
-  void add_entry(std::string symbol, std::string words) {
-    entries_.push_back({std::move(symbol), std::move(words)});
-    const double width = entries_.back().width_px();
+  void add_entry(LegendEntry entry) {
+    entries_.push_back(std::move(entry));
+    const double width = 26.0 + kLetter_px * static_cast<double>(entries_.back().text.size()) + 22.0;
     if (legend_lines_ == 0 || legend_x_px_ + width > width_px_ - left_text_px()) {
       ++legend_lines_;
       legend_x_px_ = left_text_px();
@@ -453,7 +416,7 @@ class Page {
   const PictureLook& look_;
   Area shown_;
   Svg svg_;
-  double axis_px_ = 0.0;
+  double axis_px_ = 0.0, head_px_ = 0.0;
   double px_per_m_ = 1.0;
   double arena_w_px_ = 0.0, arena_h_px_ = 0.0;
   double width_px_ = 0.0, left_px_ = 0.0;

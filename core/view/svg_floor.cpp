@@ -2,16 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <memory>
 
+#include "core/record/floor_image.hpp"
 #include "core/view/svg_text.hpp"
 
 namespace tandem::core {
 namespace {
-
-constexpr int kFloorCells = 240;  // along the longer side
-constexpr int kFloorShades = 24;
 
 /// The squares that a floor is drawn by.
 struct FloorGrid {
@@ -22,7 +19,8 @@ struct FloorGrid {
     y_m = std::max(arena.min_y_m, shown.min_y_m);
     const double width_m = std::min(arena.max_x_m, shown.max_x_m) - x_m;
     const double depth_m = std::min(arena.max_y_m, shown.max_y_m) - y_m;
-    cell_m = std::max(width_m, depth_m) / kFloorCells;
+    const double longer_m = std::max(width_m, depth_m);
+    cell_m = longer_m / std::clamp(std::round(longer_m * d.floor_pixels_per_m), 1.0, static_cast<double>(look.size_px));
     columns = std::max(1, static_cast<int>(std::ceil(width_m / cell_m - 1e-9)));
     lines = std::max(1, static_cast<int>(std::ceil(depth_m / cell_m - 1e-9)));
   }
@@ -35,33 +33,21 @@ struct FloorGrid {
 
 }  // namespace
 
-std::string floor_shades(const Drawing& drawing, const PictureLook& look) {
+std::string floor_picture(const Drawing& drawing, const PictureLook& look) {
   if (!drawing.floor) return {};
-  Svg svg;
   const FloorGrid grid(drawing, look);
-  std::map<int, Svg> paths;
-  for (int line = 0; line < grid.lines; ++line) {
-    const double y_m = grid.y_m + line * grid.cell_m;
-    const auto shade = [&](int column) {
+  FloorImage image{static_cast<std::size_t>(grid.columns), static_cast<std::size_t>(grid.lines), {}};
+  for (int line = grid.lines - 1; line >= 0; --line) {
+    for (int column = 0; column < grid.columns; ++column) {
       const double level = std::clamp(drawing.floor(grid.middle_x_m(column), grid.middle_y_m(line)), 0.0, 1.0);
-      return static_cast<int>(std::lround(level * kFloorShades));
-    };
-    for (int begin = 0; begin < grid.columns;) {
-      const int level = shade(begin);
-      int end = begin + 1;
-      while (end < grid.columns && shade(end) == level) ++end;
-      const double length_m = (end - begin) * grid.cell_m;
-      paths[level] << "M" << grid.x_m + begin * grid.cell_m << " " << y_m << "h" << length_m << "v" << grid.cell_m
-                   << "h" << -length_m << "z";
-      begin = end;
+      image.pixels.push_back(static_cast<std::uint8_t>(std::lround(255.0 * level)));
     }
   }
-  svg << "<g class=\"floor\" shape-rendering=\"crispEdges\">\n";
-  for (auto& [level, path] : paths) {
-    const auto grey = static_cast<std::uint8_t>(std::lround(255.0 * level / kFloorShades));
-    svg << "<path fill=\"" << hex({grey, grey, grey}) << "\" d=\"" << path.take() << "\"/>\n";
-  }
-  svg << "</g>\n";
+  Svg svg;
+  svg << "<image class=\"floor\" preserveAspectRatio=\"none\" transform=\"translate(" << grid.x_m << " "
+      << grid.y_m + grid.lines * grid.cell_m << ") scale(1 -1)\" width=\"" << grid.columns * grid.cell_m
+      << "\" height=\"" << grid.lines * grid.cell_m << "\" href=\"data:image/png;base64," << hal::base64(png_of(image))
+      << "\"/>\n";
   return svg.take();
 }
 

@@ -6,7 +6,7 @@
 
 namespace tandem::core {
 
-/// Runs of equal shade, one path a shade; nothing where the floor is uniform.
-std::string floor_shades(const Drawing& drawing, const PictureLook& look);
+/// An image, as fine as the floor or the page, whichever is coarser; nothing where the floor is uniform.
+std::string floor_picture(const Drawing& drawing, const PictureLook& look);
 
 }  // namespace tandem::core

@@ -111,14 +111,54 @@ TEST(Svg, TheLegendCountsKindsRealRobotsStoppedOnesAndLights) {
   EXPECT_EQ(count(svg, ">obstacle<"), 0U);
 }
 
-TEST(Svg, MergesEqualFloorCellsIntoRunsOneShadeAPath) {
+TEST(Svg, HoldsTheFloorAsAnImageAsFineAsFloorOrPage) {
   Drawing d = small_arena();
   d.floor = [](double x, double) { return x < 0.0 ? 0.0 : 1.0; };
-  const std::string svg = to_svg(d);
-  EXPECT_EQ(count(svg, "<path fill=\"#000000\""), 1U);
-  EXPECT_EQ(count(svg, "<path fill=\"#ffffff\""), 1U);
-  EXPECT_EQ(count(svg, "M-1 "), 120U);  // 120 lines of cells, each one run from the west edge
-  EXPECT_EQ(count(svg, "M0 "), 120U);   // and one from the middle
+  const auto samples = [&d](double pixels_per_m, int size_px) {
+    std::size_t asked = 0;
+    Drawing counted = d;
+    counted.floor_pixels_per_m = pixels_per_m;
+    counted.floor = [&asked](double, double) { return asked++ > 0 ? 1.0 : 0.0; };
+    const std::string svg = to_svg(counted, {.size_px = size_px});
+    EXPECT_EQ(count(svg, "href=\"data:image/png;base64,"), 1U);
+    return asked;
+  };
+  EXPECT_EQ(samples(200.0, 1000), 400U * 200U) << "an arena of 2 m x 1 m";
+  EXPECT_EQ(samples(2000.0, 1000), 1000U * 500U);
+  EXPECT_NE(to_svg(d).find("transform=\"translate(-1 0.5) scale(1 -1)\" width=\"2\" height=\"1\""), std::string::npos);
+}
+
+TEST(Svg, HasTitleLegendAndAxesAsAskedFor) {
+  Drawing d = small_arena();
+  d.robots = {{0.25, 0.0, 0.0, 0, 0, 0, false}};
+  const std::string bare = to_svg(d, {.title = false, .legend = false});
+  EXPECT_EQ(why_not_well_formed(bare), "");
+  EXPECT_EQ(bare.find("e-puck<"), std::string::npos);
+  EXPECT_EQ(bare.find("class=\"scale\""), std::string::npos);
+  EXPECT_EQ(count(bare, "<text"), 0U);
+  EXPECT_LT(svg_height_px(d, {.title = false, .legend = false}), svg_height_px(d, {}) - 80);
+  const std::string axes = to_svg(d, {.size_px = 1000, .axes = true});
+  const auto y_of = [&axes](const std::string& words) {
+    const std::size_t at = axes.rfind("y=\"", axes.find(">" + words + "<"));
+    return std::stod(axes.substr(at + 3));
+  };
+  const std::size_t frame = axes.find("fill=\"none\" stroke=\"#22272e\"");
+  const double bottom = std::stod(axes.substr(axes.rfind("height=\"", frame) + 8)) +
+                        std::stod(axes.substr(axes.rfind(" y=\"", frame) + 4));
+  EXPECT_GT(y_of("x in m"), bottom + 15.0) << "beneath the numbers, outside of the arena";
+}
+
+TEST(Svg, TellsWhatLampsPathsAndHeightsAre) {
+  Drawing d = small_arena();
+  d.lit = {{0, hal::kRed}, {1, {250, 10, 10}}, {0, hal::kBlue}};
+  d.robots = {{0.25, 0.0, 0.0, 0, 0, 2, false, 0.8}, {-0.5, 0.25, 0.0, 0, 2, 1, false, 1.2}};
+  d.trail_points = {{0.0, 0.0}, {0.125, 0.0}};
+  d.trails = {{0, 0, 2}};
+  const std::string svg = to_svg(d, {.trails_s = 10.0});
+  EXPECT_EQ(why_not_well_formed(svg), "");
+  for (const char* entry : {">1 with red LEDs<", ">1 with blue LEDs<", ">flying at z 80 cm to 1.2 m<",
+                            ">path of the last 10 s<", ">z 80 cm<", ">z 1.2 m<"})
+    EXPECT_EQ(count(svg, entry), 1U) << entry;
 }
 
 TEST(Svg, DrawsCrowdsAsDotsInTheColourOfTheirLeds) {
@@ -162,7 +202,7 @@ TEST(Svg, ShowsAndCountsOnlyWhatLiesInTheChosenRegion) {
   EXPECT_EQ(svg.find(">ep1<"), std::string::npos);
   EXPECT_NE(svg.find(">50 cm × 50 cm<"), std::string::npos);
   EXPECT_NE(svg.find("scale(2000 -2000)"), std::string::npos);
-  EXPECT_EQ(count(svg, "M0.25 "), 240U) << "the floor is drawn as finely as that of a whole arena";
+  EXPECT_EQ(count(svg, "class=\"floor\""), 1U);
 }
 
 TEST(Svg, OfAKeptFloorIsTheSame) {
