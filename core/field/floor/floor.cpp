@@ -1,5 +1,6 @@
 #include "core/field/floor/floor.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -11,17 +12,25 @@ namespace {
 
 struct Settings {
   std::string id, source = "none", path;
-  double pixels_per_m = 100.0;
+  double pixels_per_m = 200.0;
   void describe(hal::ParamVisitor& v) {
     static constexpr std::array<std::string_view, 3> kSources = {"none", "image", "loop_functions"};
     v.text("id", id, "Name.");
     v.choice("source", source, kSources,
              "Where the floor's shade comes from: even grey, a PNG image, or a hook's floor().");
     v.text("path", path, "The PNG image, laid over the whole arena, its top to the north (+y).");
-    v.number("pixels_per_meter", pixels_per_m, hal::unit::none, {0.01, 10000.0},
-             "Resolution of a floor painted by a hook.");
+    v.number(
+        "pixels_per_meter", pixels_per_m, hal::unit::none, {0.01, 10000.0},
+        "Resolution of a floor painted by a hook; where nothing is said a floor of more than 4 million pixels gets "
+        "fewer, down to 100 per metre.");
   }
 };
+
+/// Of a hook's floor whose element does not say it: painting takes a call of the hook a pixel.
+double usual_pixels_per_m(const FieldArea& area) {
+  constexpr double kMost = 200.0, kLeast = 100.0, kPixels = 4e6;
+  return std::clamp(std::sqrt(kPixels / (area.size_x_m * area.size_y_m)), kLeast, kMost);
+}
 
 std::string too_many_pixels(const FieldArea& area, double per_m) {
   const double area_m2 = area.size_x_m * area.size_y_m;
@@ -33,7 +42,8 @@ std::string too_many_pixels(const FieldArea& area, double per_m) {
 }
 
 std::unique_ptr<Field> make_floor(const Element& element, const FieldArea& area, Problems& problems) {
-  const auto settings = read_settings<Settings>(element, problems);
+  auto settings = read_settings<Settings>(element, problems);
+  if (element.attribute("pixels_per_meter") == nullptr) settings.pixels_per_m = usual_pixels_per_m(area);
   const RasterArea rectangle{area.min_x_m, area.min_y_m, area.size_x_m, area.size_y_m};
   std::string problem;
   Raster picture;
