@@ -27,6 +27,13 @@ void Server::tell(Json message) {
 void Server::told(Json message) {
   const std::string type = text_of(message, "type");
   if (type == "inspection") return send_inspection(message);
+  if (type == "states") {
+    for (const auto& viewer : std::vector(viewers)) {
+      if (viewer->state_shown() == text_of(message, "name"))
+        viewer->send({shared(hal::to_text(message)), false}, "states");
+    }
+    return;
+  }
   if (type == "state") {
     state = std::move(message);
     return send_state(state);
@@ -173,7 +180,7 @@ bool Server::make_picture(const std::string& name, const std::shared_ptr<Visitor
 
 void Server::set_wishes() {
   Wishes all;
-  std::set<std::string> layers, robots, inspected;
+  std::set<std::string> layers, robots, inspected, states;
   for (const auto& viewer : viewers) {
     layers.insert(viewer->layers().begin(), viewer->layers().end());
     if (!viewer->layers().empty()) {
@@ -181,10 +188,12 @@ void Server::set_wishes() {
       all.all_robots = all.all_robots || viewer->all_robots();
     }
     inspected.insert(viewer->inspected().begin(), viewer->inspected().end());
+    if (!viewer->state_shown().empty()) states.insert(viewer->state_shown());
   }
   all.layers.assign(layers.begin(), layers.end());
   all.layer_robots.assign(robots.begin(), robots.end());
   all.inspected.assign(inspected.begin(), inspected.end());
+  all.states.assign(states.begin(), states.end());
   const std::lock_guard lock(mutex);
   wishes = std::move(all);
   ++wishes_version;

@@ -69,6 +69,7 @@ void Viewer::handle(const ViewerCommand& command) {
   if (command.name == "rate") return answer(command.id, set_rate(command.whole));
   if (command.name == "layers") return answer(command.id, set_layers(command.whole));
   if (command.name == "inspect") return answer(command.id, set_inspected(command.whole));
+  if (command.name == "color_by") return answer(command.id, set_state_shown(command.whole));
   if (unanswered_ >= kMostUnanswered)
     return answer(command.id, refusal("too many commands wait for their answers; wait for some"));
   ++unanswered_;
@@ -121,6 +122,12 @@ Json Viewer::set_inspected(const Json& command) {
   if (robots.value().size() > kMostInspected)
     return refusal("at most " + std::to_string(kMostInspected) + " robots can be looked into at once");
   inspected_ = std::move(robots).value();
+  server_.wished();
+  return {{"ok", true}};
+}
+
+Json Viewer::set_state_shown(const Json& command) {
+  state_shown_ = hal::text_of(command, "state");
   server_.wished();
   return {{"ok", true}};
 }

@@ -54,6 +54,8 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   const std::vector<std::string>& layer_robots() const noexcept { return layer_robots_; }
   bool all_robots() const noexcept { return all_robots_; }
   const std::vector<std::string>& inspected() const noexcept { return inspected_; }
+  /// The published state that it wants of all robots; empty: none.
+  const std::string& state_shown() const noexcept { return state_shown_; }
 
  private:
   struct Queued {
@@ -66,6 +68,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   Json set_rate(const Json& command);
   Json set_layers(const Json& command);
   Json set_inspected(const Json& command);
+  Json set_state_shown(const Json& command);
   void note_got(const Json& command);
   std::size_t unacknowledged() const noexcept { return acknowledges_ ? on_the_way_.size() : 0; }
   void gone();
@@ -89,6 +92,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   std::set<std::string> layers_;
   bool all_robots_ = false;
   std::vector<std::string> layer_robots_, inspected_;
+  std::string state_shown_;
   std::size_t unanswered_ = 0;
   Clock::time_point second_began_;
   int texts_in_second_ = 0;

@@ -28,6 +28,7 @@ struct Wishes {
   bool all_robots = false;                ///< layers of everybody
   std::vector<std::string> layer_robots;  ///< ids, unless of everybody
   std::vector<std::string> inspected;     ///< ids
+  std::vector<std::string> states;        ///< names of published states, of all robots
 };
 
 /// A file that is made when it is asked for. Empty content: there is none; then `error` says why.
@@ -81,8 +82,8 @@ class Window {
   /// Takes the frame; encoding and sending happen on the window's thread. A newer one replaces one that waits.
   void show(Frame&& frame);
   /// Takes a message for all viewers; those who come later get the last one of each "type", of "log" the last 1,000
-  /// entries, of "panel" that of each layer. "inspection" goes to those who asked for its robots, "panel" to those who
-  /// look at its layer.
+  /// entries, of "panel" that of each layer. "inspection" and "states" go to those who asked for them, "panel" to those
+  /// who look at its layer.
   void tell(hal::Json message);
 
  private:

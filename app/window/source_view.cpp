@@ -1,6 +1,10 @@
 #include "app/window/source_view.hpp"
 
+#include <algorithm>
 #include <utility>
+
+#include "core/live/inspection.hpp"
+#include "core/space/stores.hpp"
 
 namespace tandem::app {
 namespace {
@@ -10,10 +14,19 @@ constexpr std::chrono::milliseconds kInspectionEvery{100};
 
 }  // namespace
 
-Json SourceView::layers_json() const {
+Json SourceView::layers_json(const core::Space& space) const {
+  const auto has = [&space](std::string_view sensor) {
+    return std::ranges::any_of(space.stores().groups, [sensor](const core::RobotGroup& group) {
+      return std::ranges::any_of(group.ports, [sensor](const hal::PortType* port) {
+        return port->role == hal::Role::Sensor && port->name == sensor;
+      });
+    });
+  };
   Json all = Json::array();
-  for (const core::LayerType* layer : layers_.types())
+  for (const core::LayerType* layer : layers_.types()) {
     all.push_back({{"name", layer->name}, {"summary", layer->summary}, {"on", false}, {"panel", layer->panels}});
+    if (!layer->sensors.empty() && std::ranges::none_of(layer->sensors, has)) all.back()["idle"] = true;
+  }
   return all;
 }
 
@@ -25,6 +38,7 @@ void SourceView::apply_wishes(window::Window& window) {
   (void)layers_.switch_on(wishes.layers);  // the window knows which there are; one that has failed was told
   layers_.choose_robots(wishes.all_robots ? std::vector<std::string>{"*"} : std::move(wishes.layer_robots));
   inspected_ = std::move(wishes.inspected);
+  states_ = std::move(wishes.states);
   inspection_told_ = {};
 }
 
@@ -37,8 +51,14 @@ void SourceView::show(window::Window& window, const core::Observation& now, hal:
   window.show(std::move(frame));
   for (Json& panel : panels) window.tell(std::move(panel));
   const Clock::time_point told = Clock::now();
-  if (inspected_.empty() || (!settled && told - inspection_told_ < kInspectionEvery)) return;
+  if (!settled && told - inspection_told_ < kInspectionEvery) return;
   inspection_told_ = told;
+  for (const std::string& name : states_) {
+    Json message = {{"type", "states"}};
+    message.update(core::published_values(now.space, name));
+    window.tell(std::move(message));
+  }
+  if (inspected_.empty()) return;
   Json message = {{"type", "inspection"}};
   message.update(inspect(inspected_));
   window.tell(std::move(message));

@@ -25,7 +25,7 @@ class SourceView {
   explicit SourceView(const hal::Catalog& catalog, hal::Log log = {}) : layers_(catalog, std::move(log)) {}
 
   /// "layers" of the message "hello".
-  hal::Json layers_json() const;
+  hal::Json layers_json(const core::Space& space) const;
   /// Whether `note` is to be called.
   bool notes() const noexcept { return layers_.any_on(); }
   /// After every tick, for layers that depend on the past.
@@ -41,7 +41,7 @@ class SourceView {
   window::SpaceFrames frames_;
   std::vector<std::size_t> layers_shown_;
   std::uint64_t wishes_ = 0;
-  std::vector<std::string> inspected_;
+  std::vector<std::string> inspected_, states_;
   Clock::time_point inspection_told_;
 };
 

@@ -130,7 +130,8 @@ void RecordPlayer::greet() {
   const Json& start = moments_.start();
   Json hello = hello_message(text_of(start, "experiment"), "record", record_.seed(), record_.ticks_per_second(),
                              {"pause", "back"}, core::areas_of_json(start.value("areas", Json::array())));
-  hello["layers"] = view_.layers_json();
+  hello["layers"] = view_.layers_json(record_.space());
+  hello["states"] = core::published_names(record_.space());
   window_.tell(std::move(hello));
   for (const core::RecordEvent& event : record_.moments().events()) {
     std::string text = text_of(event.json, "text");

@@ -68,9 +68,10 @@ void RunView::greet() {
   const core::World& world = run_.world;
   Json hello = hello_message(world.scenario().name, run_.real != nullptr ? "mixed" : "run", world.seed(),
                              world.ticks_per_second(), can, world.scenario().safety);
-  hello["layers"] = view_.layers_json();
+  hello["layers"] = view_.layers_json(world.space());
   for (const hal::RobotKind* kind : run_.catalog.all<hal::RobotKind>()) hello["kinds"].push_back(kind->name);
   for (const core::ControllerConfig& config : world.scenario().controllers) hello["controllers"].push_back(config.id);
+  hello["states"] = core::published_names(world.space());
   controls_ = core::controls_json(run_.world);
   hello["controls"] = controls_;
   window_->tell(std::move(hello));

@@ -1,10 +1,12 @@
 #include "core/live/inspection.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
 
 #include "core/live/controls.hpp"
+#include "core/record/scene_json.hpp"
 #include "core/space/stores.hpp"
 #include "hal/element.hpp"
 #include "hal/unit.hpp"
@@ -221,6 +223,34 @@ Json inspection_of(World& world, const std::vector<std::string>& robots) {
     json["controller"] = world.scenario().controllers[group.config].id;
     json["params"] = params_json(world, group, entity);
     json["controls"] = controls_json(world, robot);
+  }
+  return all;
+}
+
+std::vector<std::string> published_names(const Space& space) {
+  std::vector<std::string> names;
+  for (const RobotGroup& group : space.stores().groups) {
+    for (const hal::PublishedField& field : group.published) {
+      if (field.count == 1 && std::find(names.begin(), names.end(), field.name) == names.end())
+        names.push_back(field.name);
+    }
+  }
+  return names;
+}
+
+Json published_values(const Space& space, const std::string& name) {
+  const SpaceStores& s = space.stores();
+  Json all{{"name", name}, {"values", Json::array()}};
+  for (const std::uint32_t row : living_rows(s)) {
+    const RobotEntity& robot = s.robots[s.bodies.entity[row]];
+    const RobotBlock& block = s.blocks[robot.block];
+    const std::vector<hal::PublishedField>& published = s.groups[block.group].published;
+    const auto field = std::find_if(published.begin(), published.end(),
+                                    [&name](const hal::PublishedField& one) { return one.name == name; });
+    const bool there = field != published.end() && field->count == 1 && block.constructed[robot.slot] != 0;
+    const double value = there ? hal::value_of(*field, block.controller(robot.slot)) : std::nan("");
+    all["values"].push_back(std::isfinite(value) ? Json(value) : Json(nullptr));
+    if (there && !field->texts.empty() && !all.contains("words")) all["words"] = field->texts;
   }
   return all;
 }

@@ -96,6 +96,8 @@ void through_lenses(const LayerView& now, Sketch& out) {
 
 class CameraViews final : public Layer {
  public:
+  static constexpr std::array<std::string_view, 2> kSensors = {hal::OmnidirectionalCamera::kName,
+                                                               hal::PerspectiveCamera::kName};
   void draw(const LayerView& now, Sketch& out) override {
     all_around(now, out);
     through_lenses(now, out);

@@ -2,6 +2,7 @@
 #include "hal/device/distance_scanner.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/view/layers/readings.hpp"
@@ -12,6 +13,7 @@ namespace {
 
 class ScannerRays final : public Layer {
  public:
+  static constexpr std::array<std::string_view, 1> kSensors = {hal::DistanceScanner::kName};
   void draw(const LayerView& now, Sketch& out) override {
     for_each_reading<hal::DistanceScanner, hal::ScannerPart>(
         now, [&out](RobotId, const Pose& pose, const hal::ScannerPart& part, const hal::DistanceScanner& port,

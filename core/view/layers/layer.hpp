@@ -74,12 +74,14 @@ struct LayerType {
   std::string_view name;
   std::string_view summary;
   std::unique_ptr<Layer> (*make)() = nullptr;
-  bool draws = false;   ///< it has something to draw
-  bool panels = false;  ///< it has a panel
-  bool notes = false;   ///< it wants every tick
+  bool draws = false;                              ///< it has something to draw
+  bool panels = false;                             ///< it has a panel
+  bool notes = false;                              ///< it wants every tick
+  std::span<const std::string_view> sensors = {};  ///< it shows nothing but readings of these; empty: something else
 };
 
-/// The table of layer class `T`, whose functions are public, and which is constructed from nothing.
+/// The table of layer class `T`, whose functions are public, and which is constructed from nothing. `T::kSensors` may
+/// be an array of the names of the sensors whose readings are all that it shows.
 template <class T>
 LayerType layer_type(std::string_view name, std::string_view summary) {
   LayerType type;
@@ -89,6 +91,7 @@ LayerType layer_type(std::string_view name, std::string_view summary) {
   type.draws = !std::is_same_v<decltype(&T::draw), decltype(&Layer::draw)>;
   type.panels = !std::is_same_v<decltype(&T::panel), decltype(&Layer::panel)>;
   type.notes = !std::is_same_v<decltype(&T::note), decltype(&Layer::note)>;
+  if constexpr (requires { T::kSensors; }) type.sensors = T::kSensors;
   return type;
 }
 

@@ -1,5 +1,6 @@
 // Light sensors: a stroke outwards from each, as long as its reading.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/view/layers/readings.hpp"
@@ -11,6 +12,7 @@ namespace {
 
 class LightLevels final : public Layer {
  public:
+  static constexpr std::array<std::string_view, 1> kSensors = {hal::Light::kName};
   void draw(const LayerView& now, Sketch& out) override {
     for_each_reading<hal::Light, hal::LightPart>(
         now, [&](RobotId robot, const Pose& pose, const hal::LightPart& part, const hal::Light& port, double opacity) {

@@ -1,5 +1,6 @@
 // Rays of proximity sensors: from the sensor to what it sees, or faint to the end of its range.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/view/layers/readings.hpp"
@@ -11,6 +12,7 @@ namespace {
 
 class ProximityRays final : public Layer {
  public:
+  static constexpr std::array<std::string_view, 1> kSensors = {hal::Proximity::kName};
   void draw(const LayerView& now, Sketch& out) override {
     for_each_reading<hal::Proximity, hal::ProximityPart>(
         now,

@@ -3,6 +3,7 @@
 #include "hal/device/range_and_bearing.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/view/layers/readings.hpp"
@@ -13,6 +14,7 @@ namespace {
 
 class Links final : public Layer {
  public:
+  static constexpr std::array<std::string_view, 1> kSensors = {hal::RangeAndBearing::kName};
   void draw(const LayerView& now, Sketch& out) override {
     for_each_reading<hal::RangeAndBearing, hal::RangeAndBearingPart>(
         now, [&out](RobotId, const Pose& pose, const hal::RangeAndBearingPart& part, const hal::RangeAndBearing& port,

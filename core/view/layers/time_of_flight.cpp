@@ -1,6 +1,7 @@
 // Cones of time-of-flight sensors, as long as their readings.
 #include "hal/device/time_of_flight.hpp"
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -12,6 +13,7 @@ namespace {
 
 class TimeOfFlightCones final : public Layer {
  public:
+  static constexpr std::array<std::string_view, 1> kSensors = {hal::TimeOfFlight::kName};
   void draw(const LayerView& now, Sketch& out) override {
     for_each_reading<hal::TimeOfFlight, hal::TimeOfFlightPart>(
         now, [&out](RobotId, const Pose& pose, const hal::TimeOfFlightPart& part, const hal::TimeOfFlight& port,
