@@ -24,7 +24,7 @@ export class Areas {
       const [x, y] = area.corners[0];
       const at = camera.project(x, y, area.from);
       const text = area.max_speed ? `${area.id}: ${numberText(area.max_speed)} m/s` : area.id;
-      if (at.inFront) pen.text(text, at.x + 6, at.y - 8, { color: colors[area.kind] });
+      if (at.inFront) pen.tag(text, at.x + 6, at.y - 8, { color: colors[area.kind] });
     }
   }
 }

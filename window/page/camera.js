@@ -26,6 +26,7 @@ export class Camera {
     this.aspect = 1;
     this.height_px = 1;
     this.atHome = true;  // nobody has moved it
+    this.homeDistance = this.distance;
     this.pointers = new Map();
     this.listen();
   }
@@ -72,6 +73,7 @@ export class Camera {
       if (!this.isTop && highest < 2) this.pan(0, ((highest + lowest) / 4) * this.height_px);
     }
     this.atHome = true;
+    this.homeDistance = this.distance;
     this.place();
   }
 

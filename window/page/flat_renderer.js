@@ -35,8 +35,8 @@ export class FlatRenderer {
     scene.traverseVisible((object) => {
       const attributes = object.geometry?.attributes;
       if (attributes === undefined) return;
-      if (attributes.size !== undefined) this.gatherThings(object, things);
-      else if (object.isPoints) this.gatherDiscs(object.geometry, discs);
+      if (object.isPoints) this.gatherDiscs(object, discs);
+      else if (attributes.size !== undefined) this.gatherThings(object, things);
       else if (object.isLineSegments) this.lines(object);
       else if (object.isMesh && !object.geometry.isInstancedBufferGeometry) this.mesh(object);
     });
@@ -77,7 +77,7 @@ export class FlatRenderer {
     const { round } = object.userData;
     for (let i = 0; i < object.geometry.maxInstancedCount; ++i) {
       const [x, y, z, heading] = pose.array.subarray(4 * i, 4 * i + 4);
-      const [length, width, height] = size.array.subarray(3 * i, 3 * i + 3);
+      const [length, width, height] = size.array.subarray(4 * i, 4 * i + 3);
       const c = Math.cos(heading), s = Math.sin(heading);
       const outline = round ? Array.from({ length: corners_of_disc }, (_, k) => [0.5 * Math.cos((2 * Math.PI * k) / corners_of_disc), 0.5 * Math.sin((2 * Math.PI * k) / corners_of_disc)])
         : [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]];
@@ -97,15 +97,12 @@ export class FlatRenderer {
   }
 
   /** Robots, with their fronts as corners. */
-  gatherDiscs(geometry, discs) {
-    const { position, radius, aim, tint } = geometry.attributes;
-    if (radius === undefined) return;
-    for (let i = 0; i < geometry.drawRange.count; ++i) {
-      const [x, y, z] = position.array.subarray(3 * i, 3 * i + 3);
-      const r = radius.array[i], c = aim.array[2 * i], s = aim.array[2 * i + 1];
-      const points = [[1.35, 0], [0.5, 0.8], [-0.4, 0.9], [-0.95, 0.3], [-0.95, -0.3], [-0.4, -0.9], [0.5, -0.8]].map(([a, b]) => this.at(x + r * (c * a - s * b), y + r * (s * a + c * b), z));
-      discs.push({ depth: this.depth(x, y, z), points, color: `rgb(${tint.array.subarray(4 * i, 4 * i + 3).join()})` });
-    }
+  gatherDiscs(object, discs) {
+    const outline = [[1.35, 0], [0.5, 0.8], [-0.4, 0.9], [-0.95, 0.3], [-0.95, -0.3], [-0.4, -0.9], [0.5, -0.8]];
+    object.userData.discs?.((x, y, z, r, c, s, color) => {
+      const points = outline.map(([a, b]) => this.at(x + r * (c * a - s * b), y + r * (s * a + c * b), z));
+      discs.push({ depth: this.depth(x, y, z), points, color });
+    });
   }
 
   lines(object) {
@@ -133,8 +130,26 @@ export class FlatRenderer {
       place.fromBufferAttribute(position, geometry.index === null ? i : geometry.index.getX(i)).applyMatrix4(object.matrixWorld);
       return this.at(place.x, place.y, place.z);
     };
+    if (material.map?.image) return this.picture(object, material.map.image);
     const count = geometry.index === null ? position.count : geometry.index.count;
     const color = material.color.getStyle();
     for (let i = 0; i + 2 < count; i += 3) this.polygon([corner(i), corner(i + 1), corner(i + 2)], color, color);
+  }
+
+  /** The floor's picture: in small parallelograms, as the canvas knows no perspective. */
+  picture(object, image) {
+    const { width, height } = object.geometry.parameters, { x, y, z } = object.position;
+    const parts = 24;
+    for (let i = 0; i < parts; ++i) {
+      for (let k = 0; k < parts; ++k) {
+        const at = (a, b) => this.at(x + width * ((i + a) / parts - 0.5), y + height * (0.5 - (k + b) / parts), z);
+        const [p, q, r] = [at(0, 0), at(1.02, 0), at(0, 1.02)];
+        if (p === null || q === null || r === null) continue;
+        const [w, h] = [image.width / parts, image.height / parts];
+        this.pen.setTransform((q[0] - p[0]) / w, (q[1] - p[1]) / w, (r[0] - p[0]) / h, (r[1] - p[1]) / h, p[0], p[1]);
+        this.pen.drawImage(image, i * w, k * h, w, h, 0, 0, w, h);
+      }
+    }
+    this.pen.setTransform(1, 0, 0, 1, 0, 0);
   }
 }

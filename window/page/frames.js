@@ -37,3 +37,10 @@ export const rowRoll = (frame, i) => tilt(frame.bytes[16 * i + 14]);
 export const rowPitch = (frame, i) => tilt(frame.bytes[16 * i + 15]);
 /** RGB565 of the lit LEDs, mixed; 0: none is lit. */
 export const rowColor = (frame, i) => frame.words[8 * i + 6];
+
+/** Writes the colour of `rowColor`, 0 to 255 each. */
+export function rgb565(to, at, color) {
+  to[at] = ((color >> 11) * 527 + 23) >> 6;
+  to[at + 1] = (((color >> 5) & 63) * 259 + 33) >> 6;
+  to[at + 2] = ((color & 31) * 527 + 23) >> 6;
+}

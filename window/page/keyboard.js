@@ -6,7 +6,7 @@ const groups = [
   ['Camera', [['← → ↑ ↓', 'turn; from the top: move'], ['Shift+arrows', 'move over the floor'], ['+ −', 'nearer, farther'], ['t', 'from the top, and back'], ['f', 'follow the chosen robot'], ['h', 'the whole arena']]],
   ['Robots', [['n p', 'next, previous robot'], ['/', 'find by id'], ['click, Shift+click', 'choose, choose one more'], ['Esc', 'choose nothing']]],
   ['Touch', [['m', 'touch or only look'], ['arrows', 'while touching: move what is chosen (Shift: ten times so far)'], ['< >', 'while touching: turn it'], ['x', 'halt or release the chosen robots'], ['e', 'emergency stop of real robots']]],
-  ['Page', [['v', 'panels on and off'], ['l', 'log'], ['c', 'colours: LEDs or kinds'], ['s', 'save the picture'], ['?', 'this list']]],
+  ['Page', [['v', 'panels on and off'], ['l', 'log'], ['c', 'what colours say: as they are, kind, state, density'], ['s', 'save the picture'], ['?', 'this list']]],
 ];
 
 /** `page` has everything that keys can do; see main.js. */

@@ -43,10 +43,13 @@ export class Layers {
     this.texts.clear();
     this.panels.clear();
     this.panelHost.replaceChildren();
+    const switchOf = (layer) => h('label', { class: 'switch', title: layer.summary },
+      h('input', { type: 'checkbox', 'data-layer': layer.name, checked: this.on.has(layer.name), onchange: (event) => this.toggle(layer.name, event.target.checked) }),
+      h('span', {}, layer.name.replaceAll('_', ' ')));
+    const idle = layers.filter((layer) => layer.idle);
     this.list.replaceChildren(
-      ...layers.map((layer) => h('label', { class: 'switch', title: layer.summary },
-        h('input', { type: 'checkbox', 'data-layer': layer.name, checked: this.on.has(layer.name), onchange: (event) => this.toggle(layer.name, event.target.checked) }),
-        h('span', {}, layer.name.replaceAll('_', ' ')))),
+      ...layers.filter((layer) => !layer.idle).map(switchOf),
+      idle.length === 0 ? '' : h('details', {}, h('summary', {}, 'of sensors that no robot has'), ...idle.map(switchOf)),
       h('label', { class: 'switch minor' },
         h('input', { type: 'checkbox', id: 'layers-everybody', checked: this.everybody, onchange: (event) => {
           this.everybody = event.target.checked;
@@ -122,7 +125,7 @@ export class Layers {
     for (const texts of this.texts.values()) {
       for (const { x, y, z, text, color } of texts) {
         const at = camera.project(x, y, z ?? 0);
-        if (at.inFront) pen.text(text, at.x, at.y, { color: typeof color === 'string' ? color : Array.isArray(color) ? `rgb(${color.slice(0, 3).join()})` : undefined });
+        if (at.inFront) pen.tag(text, at.x, at.y, { color: typeof color === 'string' ? color : Array.isArray(color) ? `rgb(${color.slice(0, 3).join()})` : undefined });
       }
     }
   }

@@ -4,6 +4,7 @@ import { World } from './world.js';
 import { View } from './view.js';
 import { Scene } from './scene.js';
 import { Robots } from './robots.js';
+import { Colors } from './colors.js';
 import { Layers } from './layers.js';
 import { Selection } from './selection.js';
 import { Finder } from './finder.js';
@@ -20,7 +21,7 @@ import { bodySize } from './models.js';
 import { download } from './plot.js';
 import { h, section, toast } from './html.js';
 
-const frames_per_s = 20, hidden_frames_per_s = 0.2;
+const frames_per_s = 30, hidden_frames_per_s = 0.2;
 const element = (id) => document.getElementById(id);
 const token = new URLSearchParams(location.search).get('token') ?? '';
 
@@ -35,9 +36,11 @@ function start() {
   const scene = new Scene(view, world);
   const robots = new Robots(view, world, selection);
   const page = { connection, world, selection, view, camera, scene, robots, framesDrawn: 0 };
+  page.colors = new Colors(view, world, connection, robots, element('stage'));
+  page.colors.density.onCount = () => page.colors.show();
   page.finder = new Finder(world, selection, left, (id) => {
     const pose = world.poseOf(id);
-    if (pose !== null) camera.lookAt(pose, 40 * bodySize(world.body(world.members.index.get(id))).radius);
+    if (pose !== null) camera.lookAt(pose, Math.max(60 * bodySize(world.body(world.members.index.get(id))).radius, 0.4 * camera.homeDistance));
   });
   page.areas = new Areas(view, world);
   page.real = new Real(view, world, connection, selection, robots, element('alarm'), left);
@@ -66,8 +69,9 @@ function start() {
     element('toggle-left').setAttribute('aria-expanded', String(shown));
   };
   page.toggleColors = () => {
-    robots.setColoring(!robots.byKind);
-    toast(robots.byKind ? 'Colours of the kinds' : 'Colours of the LEDs');
+    const { options, selectedIndex } = page.colors.select;
+    page.colors.set(options[(selectedIndex + 1) % options.length].value);
+    toast(`Robots in the colour of: ${page.colors.select.selectedOptions[0].text}`);
   };
   page.toggleHalt = () => {
     for (const id of selection.ids) page.touch.halt(id, !page.inspector.isHalted(id));
@@ -124,14 +128,24 @@ function start() {
     for (const id of [...selection.ids]) if (!world.members.index.has(id)) selection.leave(id);
   });
 
-  // How it is looked at.
+  // How it is looked at. "full" leaves nothing out, however late frames are.
+  const setDetail = (level) => {
+    robots.setLevel(level);
+    view.quality.pin(level === 'full');
+  };
   const look = section('Picture', false, 'picture');
   look.body.append(
-    h('label', { class: 'control' }, h('span', {}, 'Robots in the colour of'), h('select', { onchange: (event) => robots.setColoring(event.target.value === 'kind') }, h('option', { value: 'led' }, 'their LEDs'), h('option', { value: 'kind' }, 'their kind'))),
-    h('label', { class: 'control' }, h('span', {}, 'Detail'), h('select', { id: 'detail', onchange: (event) => robots.setLevel(event.target.value) }, ['auto', 'full', 'coarse'].map((level) => h('option', {}, level)))),
+    h('label', { class: 'control' }, h('span', {}, 'Robots in the colour of'), page.colors.select),
+    h('label', { class: 'control' }, h('span', {}, 'Detail'), h('select', { id: 'detail', onchange: (event) => setDetail(event.target.value) }, ['auto', 'full', 'coarse'].map((level) => h('option', {}, level)))),
     h('div', { class: 'row' }, h('button', { onclick: page.savePicture }, 'Save this view'),
       ...['svg', 'png'].map((form) => h('a', { class: 'button', href: `/picture.${form}?token=${encodeURIComponent(token)}`, target: '_blank', rel: 'noopener' }, `Picture as ${form.toUpperCase()}`))));
   left.append(look.element);
+  const dropped = h('p', { id: 'dropped', class: 'minor', role: 'status', hidden: true });
+  element('stage').append(dropped);
+  view.onQuality = () => {
+    dropped.textContent = view.quality.text;
+    dropped.hidden = dropped.textContent === '';
+  };
 
   // The link.
   const link = element('link');

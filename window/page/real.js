@@ -98,7 +98,7 @@ export class Real {
     for (const [id, robot] of this.states) {
       const pose = robot.held_back_m_s > 0 ? this.world.poseOf(id) : null;
       const at = pose === null ? null : camera.project(pose.x, pose.y, pose.z);
-      if (at?.inFront) pen.text('held back', at.x + 10, at.y + 8, { color: okabeIto.vermilion });
+      if (at?.inFront) pen.tag('held back', at.x + 10, at.y + 8, { color: okabeIto.vermilion });
     }
   }
 

@@ -1,54 +1,65 @@
-// Draws the robots of the newest frame, in full or as discs, by how large they are in the picture; rings around the chosen, real and halted ones.
+// Draws the robots of the newest frame, in full or as discs, by how large they are in the picture; marks around the chosen, real and halted ones.
 import * as THREE from './three.module.js';
 import { okabeIto, kindColor, rgb } from './palette.js';
-import { fullModel, robotMaterial, discMaterial, bodySize, mostValues } from './models.js';
-import { rowX, rowY, rowZ, rowHeading, rowRoll, rowPitch, rowColor } from './frames.js';
+import { model, halos, robotMaterials, bodySize, mostValues, finest } from './models.js';
+import { Discs } from './discs.js';
+import { Rings } from './rings.js';
+import { Shadows } from './light.js';
+import { rowX, rowY, rowZ, rowHeading, rowRoll, rowPitch, rowColor, rgb565 } from './frames.js';
 
-const most_in_full = 1200;         // robots in the picture; above that the largest so many
-const most_fine = 250;             // above that curves have fewer corners
-const full_px = 2.5;               // radius from which parts can be told apart
+const full_px = 2.5;             // radius from which parts can be told apart
+const detail_px = [0, 9, 30];    // and from which each detail of a model is drawn
 
-/** Instances of one model. */
+const instanced = { pose: Float32Array, lit: Uint8Array, turn: Float32Array, valuesA: Float32Array, valuesB: Float32Array, over: Uint8Array };
+
+/** Instances of one model, and what shines on them. */
 class Herd {
-  constructor(scene, geometry, material) {
-    this.mesh = new THREE.Mesh(geometry, material);
-    this.mesh.frustumCulled = false;
+  constructor(scene, geometry, haloGeometry, materials) {
+    this.meshes = [new THREE.Mesh(geometry, materials.body)];
+    if (haloGeometry !== null) this.meshes.push(new THREE.Mesh(haloGeometry, materials.halo));
+    for (const mesh of this.meshes) {
+      mesh.frustumCulled = false;
+      scene.add(mesh);
+    }
+    this.triangles = geometry.index.count / 3;
     this.capacity = 0;
     this.count = 0;
-    scene.add(this.mesh);
+    this.anyLit = false;
   }
 
   reserve(count) {
     this.count = 0;
+    this.anyLit = false;
     if (count <= this.capacity) return;
     this.capacity = Math.max(16, count, 2 * this.capacity);
-    const add = (name, array, normalized) => {
-      this[name] = array;
-      const attribute = new THREE.InstancedBufferAttribute(array, 4, normalized);
-      attribute.setUsage(THREE.DynamicDrawUsage);
-      this.mesh.geometry.setAttribute(name, attribute);
-    };
     // three.js keeps buffers by attribute; those that are replaced are dropped with the geometry.
-    this.mesh.geometry.dispose();
-    add('pose', new Float32Array(4 * this.capacity), false);
-    add('lit', new Uint8Array(4 * this.capacity), true);
-    for (const name of ['turn', 'valuesA', 'valuesB']) add(name, new Float32Array(4 * this.capacity), false);
+    for (const mesh of this.meshes) mesh.geometry.dispose();
+    for (const [name, Type] of Object.entries(instanced)) {
+      this[name] = new Type(4 * this.capacity);
+      const attribute = new THREE.InstancedBufferAttribute(this[name], 4, Type === Uint8Array);
+      attribute.setUsage(THREE.DynamicDrawUsage);
+      for (const mesh of this.meshes) mesh.geometry.setAttribute(name, attribute);
+    }
   }
 
-  finish() {
-    this.mesh.visible = this.count > 0;
-    this.mesh.geometry.maxInstancedCount = this.count;
+  finish(shines) {
+    const [body, halo] = this.meshes;
+    body.visible = this.count > 0;
+    if (halo !== undefined) halo.visible = this.count > 0 && this.anyLit && shines;
+    for (const mesh of this.meshes) mesh.geometry.maxInstancedCount = this.count;
     if (this.count === 0) return;
-    for (const name of ['pose', 'lit', 'turn', 'valuesA', 'valuesB']) {
-      const attribute = this.mesh.geometry.attributes[name];
+    for (const name of Object.keys(instanced)) {
+      const attribute = body.geometry.attributes[name];
       attribute.updateRange = { offset: 0, count: 4 * this.count };
       attribute.needsUpdate = true;
     }
   }
 
   dispose(scene) {
-    scene.remove(this.mesh);
-    this.mesh.geometry.dispose();
+    for (const mesh of this.meshes) {
+      scene.remove(mesh);
+      mesh.geometry.dispose();
+    }
   }
 }
 
@@ -60,14 +71,19 @@ export class Robots {
     this.selection = selection;
     this.group = new THREE.Group();
     view.scene.add(this.group);
-    this.herds = [];  // by kind: [fine, plain]
+    this.herds = [];  // by kind, by detail
     this.level = view.isFlat ? 'coarse' : 'auto';
-    this.byKind = false;
+    this.coloring = null;  // colors.js: (robot) -> [r, g, b], or null
     this.shown = { full: 0, coarse: 0 };
     this.leds = { texture: { value: emptyTexture() }, size: { value: new THREE.Vector2(1, 1) } };
     this.sizes = new Float32Array(0);
-    this.makeDiscs();
+    this.discs = new Discs(this.group);
+    this.shadows = new Shadows(this.group);
     this.rings = new Rings(this.group);
+    world.on('scene', () => {
+      const { min_x, min_y, max_x, max_y } = world.scene.arena;
+      this.shadows.setArena((min_x + max_x) / 2, (min_y + max_y) / 2, (max_x - min_x) / 2, (max_y - min_y) / 2);
+    });
     world.on('members', () => this.rebuild());
     world.on('hello', () => this.rebuild());
     world.on('leds', () => this.takeLeds());
@@ -77,13 +93,14 @@ export class Robots {
 
   rebuild() {
     for (const herd of this.herds.flat()) herd.dispose(this.group);
-    const { bodies } = this.world.members;
-    this.herds = bodies.map((body, kind) => {
-      const material = robotMaterial(kindColor(kind), this.leds, body.look);
-      return [true, false].map((fine) => new Herd(this.group, fullModel(body, fine), material));
+    const { members } = this.world;
+    this.herds = members.bodies.map((body, kind) => {
+      const materials = robotMaterials(body, kindColor(kind), this.leds);
+      return detail_px.map((_, detail) => new Herd(this.group, model(body, detail), halos(body), materials));
     });
-    this.tints = bodies.map((_, kind) => rgb(kindColor(kind)).map((value) => 230 * value));
-    this.sizes = new Float32Array(this.world.members.count);
+    this.discs.rebuild(members, members.bodies.map((_, kind) => rgb(kindColor(kind)).map((value) => 230 * value)));
+    this.sizes = new Float32Array(members.count);
+    this.recolored = true;
     this.takeLeds();
     this.view.invalidate();
   }
@@ -110,8 +127,10 @@ export class Robots {
     this.view.invalidate();
   }
 
-  setColoring(byKind) {
-    this.byKind = byKind;
+  /** `coloring(robot)`: [r, g, b] of 0 to 255, or null: as it is; null for all: as they are. */
+  setColoring(coloring) {
+    this.coloring = coloring;
+    this.recolored = true;
     this.view.invalidate();
   }
 
@@ -122,34 +141,55 @@ export class Robots {
 
   /** Fills the instances; called before each picture. */
   update(camera) {
-    const frame = this.world.frame;
+    const { frame } = this.world;
     const count = frame?.count ?? 0;
-    const smallestFull = this.measure(frame, count, camera);
+    const { quality } = this.view;
+    const fullFrom = this.measure(frame, count, camera, quality.mostInFull);
     const { kind } = this.world.members;
-    const shown = { full: 0, coarse: 0 };
-    for (let i = 0; i < count; ++i) {
-      if (this.sizes[i] >= smallestFull && this.sizes[i] > 0) shown.full++;
-    }
-    const plain = shown.full > most_fine ? 1 : 0;
-    for (const herd of this.herds.flat()) {
-      herd.reserve(shown.full);
-      herd.mesh.material.uniforms.byKind.value = this.byKind ? 1 : 0;
-    }
-    this.reserveDiscs(count);
+    const shown = { full: 0, coarse: 0, details: detail_px.map(() => 0), triangles: 0 };
+    const detailOf = (size) => (size >= detail_px[2] && quality.fine ? 2 : size >= detail_px[1] && quality.middle ? 1 : 0);
+    const needs = this.herds.map((details) => details.map(() => 0));
     for (let i = 0; i < count; ++i) {
       const size = this.sizes[i];
       if (size === 0) continue;
-      if (size >= smallestFull) this.put(this.herds[kind[i]][plain], frame, i);
-      else this.putDisc(frame, i, shown.coarse++);
+      if (size >= fullFrom) ++needs[kind[i]][detailOf(size)];
+      else ++shown.coarse;
     }
-    for (const herd of this.herds.flat()) herd.finish();
-    this.finishDiscs(shown.coarse, camera);
+    this.herds.forEach((details, k) => details.forEach((herd, detail) => {
+      herd.reserve(needs[k][detail]);
+      shown.full += needs[k][detail];
+      shown.details[detail] += needs[k][detail];
+      shown.triangles += needs[k][detail] * herd.triangles;
+    }));
+    this.recolor(count);
+    this.shadows.begin(quality.shadows ? shown.full : 0);
+    if (shown.full > 0) {
+      for (let i = 0; i < count; ++i) {
+        if (this.sizes[i] > 0 && this.sizes[i] >= fullFrom) this.put(this.herds[kind[i]][detailOf(this.sizes[i])], frame, i, quality);
+      }
+    }
+    for (const herd of this.herds.flat()) herd.finish(quality.glow);
+    this.shadows.finish();
+    this.discs.show(frame, fullFrom, camera, this.view.pixelRatio, shown.coarse > 0);
     this.shown = shown;
     this.ring(camera);
   }
 
+  /** The colours over robots, when they are others. */
+  recolor(count) {
+    if (count === 0 || (this.coloring === null && !this.recolored)) return;
+    const { array } = this.discs.over;
+    for (let i = 0; i < count; ++i) {
+      const color = this.coloring?.(i) ?? null;
+      array[4 * i + 3] = color === null ? 0 : 255;
+      if (color !== null) for (let k = 0; k < 3; ++k) array[4 * i + k] = color[k];
+    }
+    this.discs.over.needsUpdate = true;
+    this.recolored = false;
+  }
+
   /** Fills `sizes` with the radius of each robot in pixels, 0 where it is out of the picture; returns the size from which robots are drawn in full. */
-  measure(frame, count, camera) {
+  measure(frame, count, camera, mostInFull) {
     const { kind, bodies } = this.world.members;
     const radii = bodies.map((body) => bodySize(body).radius);
     const eye = camera.eye;
@@ -162,7 +202,7 @@ export class Robots {
       const w = m[3] * x + m[7] * y + m[11] * z + m[15];
       const cx = Math.abs(m[0] * x + m[4] * y + m[8] * z + m[12]), cy = Math.abs(m[1] * x + m[5] * y + m[9] * z + m[13]);
       let size = 0;
-      if (w > 0 && cx - 3 * r * sx < w && cy - 3 * r * sy < w) size = (r * sy * half_px) / w;
+      if (w > 0 && cx - 6 * r * sx < w && cy - 6 * r * sy < w) size = (r * sy * half_px) / w;
       this.sizes[i] = size;
       if (size >= full_px) bins[Math.min(63, Math.floor(8 * Math.log2(size / full_px)))]++;
     }
@@ -171,20 +211,22 @@ export class Robots {
     let sum = 0;
     for (let bin = 63; bin >= 0; --bin) {
       sum += bins[bin];
-      if (sum > most_in_full) return full_px * 2 ** ((bin + 1) / 8);
+      if (sum > mostInFull) return full_px * 2 ** ((bin + 1) / 8);
     }
     return full_px;
   }
 
-  put(herd, frame, i) {
+  put(herd, frame, i, quality) {
     const at = 4 * herd.count++;
-    const { pose, lit, turn } = herd;
-    pose[at] = rowX(frame, i);
-    pose[at + 1] = rowY(frame, i);
-    pose[at + 2] = rowZ(frame, i);
+    const { pose, lit, turn, over } = herd;
+    const x = rowX(frame, i), y = rowY(frame, i), z = rowZ(frame, i), mixed = rowColor(frame, i);
+    pose[at] = x;
+    pose[at + 1] = y;
+    pose[at + 2] = z;
     pose[at + 3] = this.hasLeds ? i : -1;
-    putColor(lit, at, rowColor(frame, i));
-    lit[at + 3] = rowColor(frame, i) === 0 ? 0 : 255;
+    rgb565(lit, at, mixed);
+    lit[at + 3] = mixed === 0 ? 0 : 255;
+    if (mixed !== 0) herd.anyLit = true;
     const heading = rowHeading(frame, i);
     turn[at] = Math.cos(heading);
     turn[at + 1] = Math.sin(heading);
@@ -192,54 +234,11 @@ export class Robots {
     turn[at + 3] = rowPitch(frame, i);
     const values = this.world.values[i];
     for (let k = 0; k < mostValues; ++k) (k < 4 ? herd.valuesA : herd.valuesB)[at + (k & 3)] = values[k] ?? 0;
-  }
-
-  makeDiscs() {
-    this.discs = new THREE.Points(new THREE.BufferGeometry(), discMaterial());
-    this.discs.frustumCulled = false;
-    this.discs.visible = false;
-    this.discCapacity = 0;
-    this.group.add(this.discs);
-  }
-
-  reserveDiscs(count) {
-    if (count <= this.discCapacity) return;
-    this.discCapacity = count;
-    const { geometry } = this.discs;
-    geometry.dispose();
-    for (const [name, size] of [['position', 3], ['radius', 1], ['aim', 2]]) {
-      geometry.setAttribute(name, new THREE.BufferAttribute(new Float32Array(size * count), size));
-    }
-    geometry.setAttribute('tint', new THREE.BufferAttribute(new Uint8Array(4 * count), 4, true));
-  }
-
-  putDisc(frame, i, at) {
-    const { position, radius, aim, tint } = this.discs.geometry.attributes;
-    const body = this.world.body(i);
-    const size = bodySize(body);
-    position.array[3 * at] = rowX(frame, i);
-    position.array[3 * at + 1] = rowY(frame, i);
-    position.array[3 * at + 2] = rowZ(frame, i) + 0.5 * size.height;
-    radius.array[at] = size.radius;
-    const heading = rowHeading(frame, i);
-    aim.array[2 * at] = Math.cos(heading);
-    aim.array[2 * at + 1] = Math.sin(heading);
-    const color = this.byKind ? 0 : rowColor(frame, i);
-    if (color !== 0) putColor(tint.array, 4 * at, color);
-    else tint.array.set(this.tints[this.world.members.kind[i]], 4 * at);
-  }
-
-  finishDiscs(count, camera) {
-    this.discs.visible = count > 0;
-    if (count === 0) return;
-    const { uniforms } = this.discs.material;
-    uniforms.height.value = camera.height_px * this.view.pixelRatio;
-    uniforms.smallest.value = 2 * this.view.pixelRatio;
-    this.discs.geometry.setDrawRange(0, count);
-    for (const attribute of Object.values(this.discs.geometry.attributes)) {
-      attribute.updateRange = { offset: 0, count: attribute.itemSize * count };
-      attribute.needsUpdate = true;
-    }
+    for (let k = 0; k < 4; ++k) over[at + k] = this.discs.over.array[4 * i + k];
+    over[at + 3] *= 0.85;
+    if (!quality.shadows) return;
+    const { radius, height } = bodySize(this.world.body(i));
+    this.shadows.put(x, y, z, height, radius, 0, 1, 0, lit, quality.glow && mixed !== 0 ? at : -1);
   }
 
   ring(camera) {
@@ -255,8 +254,10 @@ export class Robots {
     };
     each(world.members.real, (i, pose) => rings.put('dashed', pose, radius(i, pose, 1.55, 11), okabeIto.blue));
     each(world.halted, (i, pose) => rings.put('cross', { ...pose, z: pose.z + bodySize(world.body(i)).height + 0.004 }, radius(i, pose, 0.9, 5), okabeIto.vermilion));
-    each([...this.selection.ids].map((id) => world.members.index.get(id)).filter((i) => i !== undefined),
-      (i, pose) => rings.put('ring', pose, radius(i, pose, 1.3, 8), okabeIto.yellow));
+    each([...this.selection.ids].map((id) => world.members.index.get(id)).filter((i) => i !== undefined), (i, pose) => {
+      rings.put('edge', pose, radius(i, pose, 1.3, 8), okabeIto.black);  // yellow alone is hard to see on a light floor
+      rings.put('ring', pose, radius(i, pose, 1.3, 8), okabeIto.yellow);
+    });
     rings.finish();
   }
 
@@ -267,7 +268,7 @@ export class Robots {
       const pose = world.pose(i);
       if (pose === null) return;
       const at = camera.project(pose.x, pose.y, pose.z + bodySize(world.body(i)).height);
-      if (at.inFront) pen.text(text, at.x + 10, at.y - 8);
+      if (at.inFront) pen.tag(text, at.x + 10, at.y - 8);
     };
     for (const id of this.selection.ids) {
       const i = world.members.index.get(id);
@@ -278,67 +279,6 @@ export class Robots {
       if (!this.selection.ids.has(id)) name(i, this.realText?.(id) ?? id);
     }
   }
-}
-
-/** Flat marks on the floor around robots: few, so each is a mesh. */
-class Rings {
-  constructor(group) {
-    this.group = group;
-    this.pool = { ring: [], dashed: [], cross: [] };
-    const dashes = [];
-    for (let i = 0; i < 8; ++i) dashes.push(new THREE.RingBufferGeometry(0.86, 1, 4, 1, (i * Math.PI) / 4, Math.PI / 7));
-    this.shapes = { ring: new THREE.RingBufferGeometry(0.84, 1, 40), dashed: join(dashes), cross: crossShape() };
-    this.materials = {};
-  }
-
-  begin() {
-    this.used = { ring: 0, dashed: 0, cross: 0 };
-  }
-
-  put(shape, pose, radius, color) {
-    const pool = this.pool[shape];
-    const number = this.used[shape]++;
-    if (pool.length <= number) {
-      this.materials[color] ??= new THREE.MeshBasicMaterial({ color, depthTest: false, transparent: true, side: THREE.DoubleSide });
-      const mesh = new THREE.Mesh(this.shapes[shape], this.materials[color]);
-      mesh.renderOrder = 5;
-      pool.push(mesh);
-      this.group.add(mesh);
-    }
-    const mesh = pool[number];
-    mesh.visible = true;
-    mesh.position.set(pose.x, pose.y, pose.z + 0.003);
-    mesh.scale.set(radius, radius, 1);
-  }
-
-  finish() {
-    for (const [shape, pool] of Object.entries(this.pool)) {
-      for (let i = this.used[shape]; i < pool.length; ++i) pool[i].visible = false;
-    }
-  }
-}
-
-function join(geometries) {
-  const position = [];
-  for (const geometry of geometries) position.push(...geometry.toNonIndexed().attributes.position.array);
-  const joined = new THREE.BufferGeometry();
-  joined.setAttribute('position', new THREE.BufferAttribute(new Float32Array(position), 3));
-  return joined;
-}
-
-function crossShape() {
-  const w = 0.14;
-  const bar = [[-1, -w], [1, -w], [1, w], [-1, -w], [1, w], [-1, w]];
-  const turned = (angle) => bar.flatMap(([x, y]) => [x * Math.cos(angle) - y * Math.sin(angle), x * Math.sin(angle) + y * Math.cos(angle), 0]);
-  const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array([...turned(Math.PI / 4), ...turned(-Math.PI / 4)]), 3));
-  return geometry;
-}
-
-function putColor(to, at, rgb565) {
-  to[at] = ((rgb565 >> 11) * 527 + 23) >> 6;
-  to[at + 1] = (((rgb565 >> 5) & 63) * 259 + 33) >> 6;
-  to[at + 2] = ((rgb565 & 31) * 527 + 23) >> 6;
 }
 
 function emptyTexture() {

@@ -1,6 +1,8 @@
 // Draws what is not a robot: the floor, boxes, cylinders, lamps, and the borders of engines' regions.
 import * as THREE from './three.module.js';
 import { theme, rgb } from './palette.js';
+import { Things } from './things.js';
+import { Shadows } from './light.js';
 
 /** The longest of 1, 2, 5, 10, 20 … m (or a decimal fraction of them) that is not above `limit`. */
 export function roundLength(limit) {
@@ -15,14 +17,20 @@ export class Scene {
     this.view = view;
     this.world = world;
     this.group = new THREE.Group();
-    this.boxes = new Things(this.group, new THREE.BoxBufferGeometry(1, 1, 1));
-    this.cylinders = new Things(this.group, uprightCylinder(), true);
+    this.boxes = new Things(this.group, false);
+    this.cylinders = new Things(this.group, true);
+    this.shadows = new Shadows(this.group);
     this.floorAddress = undefined;
     view.scene.add(this.group);
     view.addItem(this);
     world.on('scene', () => this.rebuild());
     world.on('objects', () => this.place());
     this.chosen = null;  // { object or light: id }, ringed
+  }
+
+  update(camera) {
+    this.shadows.mesh.visible = this.view.quality.shadows && this.shadows.count > 0;
+    for (const things of [this.boxes, this.cylinders]) things.material.uniforms.cut.value = camera.isTop ? 0 : 1;
   }
 
   retint() {
@@ -33,9 +41,9 @@ export class Scene {
     const { scene } = this.world;
     const { arena } = scene;
     this.view.camera.setHome(arena);
-    for (const things of [this.boxes, this.cylinders]) {
-      things.material.uniforms.arena.value.set((arena.min_x + arena.max_x) / 2, (arena.min_y + arena.max_y) / 2, (arena.max_x - arena.min_x) / 2, (arena.max_y - arena.min_y) / 2);
-    }
+    const place = [(arena.min_x + arena.max_x) / 2, (arena.min_y + arena.max_y) / 2, (arena.max_x - arena.min_x) / 2, (arena.max_y - arena.min_y) / 2];
+    for (const things of [this.boxes, this.cylinders]) things.material.uniforms.arena.value.set(...place);
+    this.shadows.setArena(...place);
     for (const part of [this.ground, this.grid, this.lamps, this.borders, this.beads]) {
       if (part !== undefined) this.group.remove(part);
     }
@@ -71,8 +79,7 @@ export class Scene {
       return;
     }
     new THREE.TextureLoader().load(address, (texture) => {
-      texture.minFilter = THREE.LinearFilter;
-      texture.generateMipmaps = false;
+      texture.anisotropy = 8;
       this.floorTexture?.dispose();
       this.floorTexture = texture;
       this.floorAddress = address;
@@ -106,17 +113,25 @@ export class Scene {
       const [r, g, b] = light.color.map((value) => value / 255);
       const on = light.intensity > 0;
       const color = new THREE.Color(on ? r : 0.3, on ? g : 0.3, on ? b : 0.3);
-      const bulb = new THREE.Mesh(new THREE.SphereBufferGeometry(0.05, 16, 10), new THREE.MeshBasicMaterial({ color }));
+      const bulb = new THREE.Mesh(new THREE.SphereBufferGeometry(0.04, 20, 14), new THREE.MeshBasicMaterial({ color: on ? color.clone().lerp(white, 0.45) : color }));
       bulb.position.set(light.x, light.y, light.z);
       this.lamps.add(bulb);
-      if (on) {
-        const halo = new THREE.Sprite(new THREE.SpriteMaterial({ map: haloTexture(), color, transparent: true, opacity: 0.6, depthWrite: false }));
-        halo.position.copy(bulb.position);
-        const size = 0.3 + 0.1 * Math.min(4, Math.sqrt(light.intensity));
-        halo.scale.set(size, size, 1);
-        this.lamps.add(halo);
+      const post = (radius, low, high) => {
+        const mesh = new THREE.Mesh(new THREE.CylinderBufferGeometry(radius, radius, high - low, 14), new THREE.MeshBasicMaterial({ color: theme().post }));
+        mesh.rotation.x = Math.PI / 2;
+        mesh.position.set(light.x, light.y, (low + high) / 2);
+        this.lamps.add(mesh);
+      };
+      if (light.z > 0.06) {
+        post(0.007, 0, light.z - 0.03);
+        post(0.045, 0, 0.008);
       }
-      this.lamps.add(lines([light.x, light.y, 0, light.x, light.y, light.z], theme().border));
+      if (!on) continue;
+      const halo = new THREE.Sprite(new THREE.SpriteMaterial({ map: haloTexture(), color, transparent: true, opacity: 0.7, depthWrite: false, blending: THREE.AdditiveBlending }));
+      halo.position.copy(bulb.position);
+      const size = 0.4 + 0.12 * Math.min(4, Math.sqrt(light.intensity));
+      halo.scale.set(size, size, 1);
+      this.lamps.add(halo);
     }
     this.group.add(this.lamps);
   }
@@ -124,22 +139,24 @@ export class Scene {
   /** Puts the boxes and cylinders where they are. */
   place() {
     const { objects } = this.world.scene;
+    const { arena } = this.world.scene;
+    const long = 0.06 * Math.max(arena.max_x - arena.min_x, arena.max_y - arena.min_y);
     const tint = { fixed: rgb(theme().wall), movable: rgb(theme().movable) };
-    this.boxes.begin(objects.length);
-    this.cylinders.begin(objects.length);
+    for (const all of [this.boxes, this.cylinders, this.shadows]) all.begin(objects.length);
     const beads = [];
     for (const o of objects) {
       const color = o.movable ? tint.movable : tint.fixed;
       const height = Math.max(0.002, o.height);
-      if (o.shape === 'box') this.boxes.put(o, o.size_x, o.size_y, height, color);
-      else this.cylinders.put(o, 2 * o.radius, 2 * o.radius, height, color);
+      const c = Math.cos(o.heading), s = Math.sin(o.heading);
+      const [x, y] = o.shape === 'box' ? [o.size_x, o.size_y] : [2 * o.radius, 2 * o.radius];
+      const hides = !o.movable && Math.max(x, y) > long;
+      (o.shape === 'box' ? this.boxes : this.cylinders).put(o, x, y, height, color, hides);
+      this.shadows.put(o.x, o.y, o.z, Math.min(height, 0.5), x / 2, o.shape === 'box' ? y / 2 : 0, c, s);
       for (const [x, y, z, r, g, b] of o.leds ?? []) {
-        const c = Math.cos(o.heading), s = Math.sin(o.heading);
         beads.push({ at: [o.x + c * x - s * y, o.y + s * x + c * y, o.z + z], color: [r / 255, g / 255, b / 255] });
       }
     }
-    this.boxes.finish();
-    this.cylinders.finish();
+    for (const all of [this.boxes, this.cylinders, this.shadows]) all.finish();
     if (this.beads !== undefined) this.group.remove(this.beads);
     this.beads = new THREE.Group();
     for (const { at, color } of beads) {
@@ -189,77 +206,6 @@ export class Scene {
   }
 }
 
-/** Many boxes, or many cylinders, in one go. */
-class Things {
-  constructor(group, shape, round = false) {
-    this.group = group;
-    this.round = round;
-    this.shape = shape;
-    this.material = new THREE.ShaderMaterial({
-      vertexShader: /* glsl */ `
-        attribute vec4 pose;  // x, y, z of the base, heading
-        attribute vec3 size;
-        attribute vec3 tint;
-        uniform vec4 arena;  // middle, half of its sides
-        varying vec4 color;
-        vec3 aboutZ(vec3 v, float a) { return vec3(cos(a) * v.x - sin(a) * v.y, sin(a) * v.x + cos(a) * v.y, v.z); }
-        void main() {
-          vec3 p = aboutZ(vec3(position.xy, position.z + 0.5) * size, pose.w) + pose.xyz;
-          vec3 n = normalize(aboutZ(normal, pose.w));
-          float light = 0.6 + 0.4 * max(0.0, dot(n, vec3(0.36, -0.48, 0.8)));
-          // What is seen of a wall from outside does not hide what is behind it.
-          vec2 out_ = (p.xy - arena.xy) / arena.zw;
-          bool outside = max(abs(out_.x), abs(out_.y)) > 0.85 && dot(n.xy, out_) > 0.5;
-          color = vec4(tint * light, outside ? 0.3 : 1.0);
-          gl_Position = projectionMatrix * viewMatrix * vec4(p, 1.0);
-        }`,
-      fragmentShader: 'varying vec4 color; void main() { gl_FragColor = color; }',
-      transparent: true,
-      uniforms: { arena: { value: new THREE.Vector4(0, 0, 1, 1) } },
-    });
-    this.capacity = -1;
-  }
-
-  begin(most) {
-    this.count = 0;
-    if (most <= this.capacity) return;
-    if (this.mesh !== undefined) {
-      this.group.remove(this.mesh);
-      this.mesh.geometry.dispose();
-    }
-    this.capacity = most;
-    const geometry = new THREE.InstancedBufferGeometry().copy(this.shape);
-    for (const [name, size] of [['pose', 4], ['size', 3], ['tint', 3]]) {
-      geometry.setAttribute(name, new THREE.InstancedBufferAttribute(new Float32Array(size * Math.max(1, most)), size));
-    }
-    this.mesh = new THREE.Mesh(geometry, this.material);
-    this.mesh.frustumCulled = false;
-    this.mesh.userData.round = this.round;
-    this.mesh.renderOrder = 3;  // after robots, which are seen through them
-    this.group.add(this.mesh);
-  }
-
-  put(thing, x, y, z, color) {
-    const { pose, size, tint } = this.mesh.geometry.attributes;
-    pose.array.set([thing.x, thing.y, thing.z, thing.heading], 4 * this.count);
-    size.array.set([x, y, z], 3 * this.count);
-    tint.array.set(color, 3 * this.count);
-    this.count++;
-  }
-
-  finish() {
-    this.mesh.geometry.maxInstancedCount = this.count;
-    this.mesh.visible = this.count > 0;
-    for (const name of ['pose', 'size', 'tint']) this.mesh.geometry.attributes[name].needsUpdate = true;
-  }
-}
-
-function uprightCylinder() {
-  const shape = new THREE.CylinderBufferGeometry(0.5, 0.5, 1, 28);
-  shape.rotateX(Math.PI / 2);
-  return shape;
-}
-
 function lines(points, color) {
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(points), 3));
@@ -268,6 +214,7 @@ function lines(points, color) {
   return made;
 }
 
+const white = new THREE.Color(1, 1, 1);
 const beadShape = new THREE.SphereBufferGeometry(0.012, 8, 6);
 
 let halo = null;

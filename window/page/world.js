@@ -2,7 +2,7 @@
 import { Events } from './events.js';
 import { rowX, rowY, rowZ, rowHeading } from './frames.js';
 
-/** Emits "hello", "scene", "members", "poses", "leds", "values", "state", "objects", "marks". Robots are numbered by their place in the newest list of members. */
+/** Emits "hello", "scene", "members", "poses", "leds", "values", "state", "states", "objects", "marks". Robots are numbered by their place in the newest list of members. */
 export class World extends Events {
   constructor(connection) {
     super();
@@ -16,6 +16,7 @@ export class World extends Events {
     this.ledsPerRobot = 0;
     this.values = [];       // by robot: what moves on it, in the order of its kind's joints, then of its links that hold something
     this.halted = new Set();
+    this.states = null;     // { name, values by robot, words } of the published state that was asked for
     this.framesSeen = 0;
     connection.on('hello', (message) => this.takeHello(message))
       .on('scene', (message) => this.takeScene(message))
@@ -23,6 +24,10 @@ export class World extends Events {
       .on('state', (message) => {
         this.state = message;
         this.emit('state', message);
+      })
+      .on('states', (message) => {
+        this.states = message;
+        this.emit('states');
       })
       .on('objects', (message) => this.takeObjects(message))
       .on('marks', (message) => {

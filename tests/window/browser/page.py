@@ -109,6 +109,7 @@ class Page:
     def open(self, address):
         self.driver.get(address)
         self.until("the first picture", "window.tandem && tandem.world.frame && tandem.view.pictures > 0")
+        self.js("tandem.view.quality.pin(true)")  # nothing is left out, however busy the machine is
 
     def js(self, expression, *arguments):
         return self.driver.execute_script("return " + expression, *arguments)

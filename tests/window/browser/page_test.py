@@ -93,7 +93,7 @@ class TestRun(WithBrowser):
             os.makedirs(os.path.dirname(kept), exist_ok=True)
             write_ppm(kept, picture)
         self.assertLess(difference(picture, read_ppm(kept)), 0.02)
-        page.press("c")  # colours are another matter than shapes
+        page.js("tandem.colors.set('kind')")  # colours are another matter than shapes
         page.ask({"do": "move", "robot": "ep1", "x": 0.1, "y": -0.6})
         page.until("the move", "Math.abs(tandem.world.poseOf('ep1').y + 0.6) < 0.01")
         self.assertGreater(difference(page.pixels(96, 64), picture), 0.0003, "it sees a robot that is elsewhere")
@@ -261,6 +261,87 @@ class TestRun(WithBrowser):
             if {"view", "find", "Tick"} <= seen:
                 break
         self.assertTrue({"view", "find", "Tick"} <= seen, seen)
+
+    def test_near_robots_are_made_of_their_parts_and_far_ones_of_fewer(self):
+        page = self.page
+        triangles = []
+        for distance in (0.4, 3.0, 12.0, 60.0):
+            page.js("(tandem.camera.lookAt(tandem.world.poseOf('ep1'), 1e9), tandem.camera.distance = arguments[0], tandem.camera.place(), tandem.view.render())", distance)
+            triangles.append(page.js("tandem.robots.shown.triangles"))
+        self.assertEqual(page.js("tandem.robots.shown.coarse"), 2, "two discs")
+        self.assertEqual(triangles, sorted(triangles, reverse=True))
+        self.assertGreater(triangles[0], 1500)
+        self.assertLess(triangles[2], 500)
+        links = page.js("tandem.world.body(0).look.links")
+        wheels = [link for link in links if link["shape"] == "wheel"]
+        self.assertAlmostEqual(max(link["high"][2] for link in wheels), 0.041, 6, "an e-puck's wheels are 41 mm high")
+
+    def test_things_throw_shadows_away_from_the_sun(self):
+        page = self.page
+        page.press("t")
+        page.until("the top view", "tandem.camera.isTop")
+        pose = page.js("tandem.world.poseOf('ep1')")
+        behind, before = (pose["x"] - 0.045, pose["y"] + 0.05), (pose["x"] + 0.07, pose["y"] - 0.075)
+        self.assertGreater(far(page.pixel(*page.floor_at(*behind)), GROUND), 30, "north-west of it")
+        self.assertLess(far(page.pixel(*page.floor_at(*before)), GROUND), 12)
+
+    def test_a_wall_before_the_arena_is_cut_away(self):
+        page = self.page
+        page.js("(tandem.camera.goHome(), tandem.camera.orbit(0, -0.35))")
+        inside = page.floor_at(0.2, -0.75)  # behind the wall in the south, which is 20 cm high
+        self.assertLess(sum(abs(a - b) for a, b in zip(page.pixel(*inside), GROUND)), 150)
+        page.js("(tandem.scene.boxes.material.uniforms.cut.value = 0, tandem.scene.update = () => {})")
+        self.assertGreater(sum(abs(a - b) for a, b in zip(page.pixel(*inside), GROUND)), 150)
+
+    def test_late_frames_drop_something_and_say_so(self):
+        page = self.page
+        page.js("tandem.view.quality.pin(false)")
+        note = "Array.from({ length: arguments[2] }, (_, i) => tandem.view.quality.note(arguments[0], arguments[1] + i * arguments[0]))"
+        page.js(f"(tandem.view.invalidate = tandem.view.render = () => {{}}, tandem.view.quality.start(), {note})", 90, 0, 72)
+        text = page.js("document.getElementById('dropped').textContent")
+        self.assertIn("shadows", text)
+        self.assertFalse(page.js("document.getElementById('dropped').hidden"))
+        dropped = page.js("tandem.view.quality.dropped")
+        page.js(note, 10, 1e5, 12)
+        self.assertEqual(page.js("tandem.view.quality.dropped"), dropped - 1, "it comes back when there is time")
+        page.js("tandem.view.quality.pin(true)")
+        self.assertTrue(page.js("document.getElementById('dropped').hidden"))
+
+    def test_a_still_picture_is_drawn_once_more_with_smooth_edges(self):
+        page = self.page
+        page.until("twice the pixels", "tandem.view.pixelRatio === 2")
+        page.js("tandem.camera.orbit(0.1, 0)")
+        page.until("as many as the screen while it moves", "tandem.view.pixelRatio === 1")
+
+    def test_colours_say_the_kind_or_how_dense_robots_stand(self):
+        page = self.page
+        page.js("tandem.colors.set('kind')")
+        self.assertIn("e-puck", page.find("#legend").text)
+        page.js("tandem.colors.set('density')")
+        page.until("its legend", "document.getElementById('legend').textContent.startsWith('robots per m²')")
+        page.press("c")
+        self.assertEqual(page.js("tandem.colors.mode"), "led")
+        self.assertTrue(page.js("document.getElementById('legend').hidden"))
+
+    def test_names_stand_beside_each_other_and_once(self):
+        page = self.page
+        answer = page.ask({"do": "move", "robot": "ep2", "x": 0.4, "y": 0.2})
+        self.assertTrue(answer["ok"], answer)
+        page.js("(tandem.selection.choose('ep1'), tandem.selection.choose('ep2', true))")
+        page.find("[data-layer=ids]").click()
+        page.until("the layer's names", "[...tandem.layers.texts.values()].some((texts) => texts.length === 2)")
+        page.js("tandem.view.render()")
+        boxes = page.js("tandem.view.pen.taken.map((box) => ({ box: [...box], text: box.text }))")
+        self.assertEqual(sorted(b["text"] for b in boxes), ["ep1", "ep2"])
+        (a, b) = (b["box"] for b in boxes)
+        self.assertFalse(a[0] < b[2] and a[2] > b[0] and a[1] < b[3] and a[3] > b[1], boxes)
+        page.find("[data-layer=ids]").click()
+
+    def test_layers_of_sensors_that_no_robot_has_are_folded_away(self):
+        page = self.page
+        folded = "document.querySelector('#layers details [data-layer=' + arguments[0] + ']') !== null"
+        self.assertTrue(page.js(folded, "cameras"))
+        self.assertFalse(page.js(folded, "proximity"))
 
     def test_starts_anew_with_another_seed(self):
         page = self.page
@@ -522,6 +603,28 @@ class TestFigures(WithBrowser):
         page.until("all robots", "tandem.robots.shown.full === 10")
         page.screenshot("window.png")
         self.assertEqual(page.errors(), [])
+
+    def test_lit_lamps_glow_and_states_have_colours(self):
+        page = self.page
+        self.show("footbot_foraging.xml", 300)
+        lit = page.js("tandem.world.members.ids.findIndex((_, i) => new Uint16Array(tandem.world.frame.words.buffer, 32)[8 * i + 6] === 31)")
+        self.assertGreaterEqual(lit, 0, "one looks for its nest, with a blue beacon")
+        page.js("(tandem.camera.lookAt(tandem.world.pose(arguments[0]), 0.9), tandem.view.render())", lit)
+        pose = page.js("tandem.world.pose(arguments[0])", lit)
+        red, _, blue = page.pixel(*page.floor_at(pose["x"] + 0.1, pose["y"] - 0.02))
+        self.assertGreater(blue, red + 40, "the floor beside it")
+        page.screenshot("window_near.png")
+        page.js("tandem.colors.set('state state')")
+        page.until("its words", "/search|rest|bring/.test(document.getElementById('legend').textContent)")
+        self.assertEqual(page.errors(), [])
+
+    def test_without_webgl_the_floor_is_there(self):
+        page = self.page
+        run = self.show("footbot_foraging.xml", 5)
+        page.open(run.address + "&flat=1")
+        page.until("the floor", "tandem.scene.floorTexture !== undefined")
+        nest, field = page.pixel(*page.floor_at(-2.1, 0.3)), page.pixel(*page.floor_at(0.3, 2.0))
+        self.assertGreater(far(nest, field), 60)
 
     def test_flying_robots_lean_over_a_floor(self):
         page = self.page
