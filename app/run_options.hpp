@@ -21,7 +21,7 @@ struct PictureRequest {
   double trails_s = 0.0;
   bool axes = false, ids = false, no_title = false, no_legend = false;
   std::vector<std::string> layers;  ///< over pictures and films
-  std::string film;                 ///< .mp4, .mkv, or pictures: "FOLDER/" or "FOLDER/%06d.png"
+  std::string film;                 ///< .mp4, .mkv, .webp, or pictures: "FOLDER/" or "FOLDER/%06d.png"
   std::int64_t film_every = 1;      ///< ticks
   std::string povray;               ///< .pov, or .png beside one: a scene for POV-Ray
   double film_rate = 0.0;           ///< frames a second; 0: as fast as it was, 60 at most

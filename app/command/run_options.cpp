@@ -11,7 +11,8 @@ void describe_pictures(hal::CommandLine& line, PictureRequest& o) {
       .not_negative()
       .needs("--picture");
   describe_looks(line, o);
-  line.option("--film", o.film, "Make a film: FILE.mp4 or .mkv (ffmpeg), or pictures: FOLDER/ or FOLDER/%06d.png")
+  line.option("--film", o.film,
+              "Make a film: FILE.mp4, .mkv or .webp (ffmpeg), or pictures: FOLDER/ or FOLDER/%06d.png")
       .file();
   describe_film(line, "--film", o);
   line.option("--povray", o.povray,

@@ -41,7 +41,7 @@ struct PictureOptions : DrawOptions {
 struct FilmOptions : DrawOptions {
   void describe(hal::CommandLine& line) {
     line.word("record", record, "The record; that of a run that was killed is FILE.part").required().file();
-    line.option("-o,--film", pictures.film, "FILE.mp4 or .mkv (ffmpeg), or pictures: FOLDER/ or FOLDER/%06d.png")
+    line.option("-o,--film", pictures.film, "FILE.mp4, .mkv or .webp (ffmpeg), or pictures: FOLDER/ or FOLDER/%06d.png")
         .required()
         .file();
     describe_film(line, "--film", pictures);

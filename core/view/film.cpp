@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
+#include <map>
 #include <utility>
+#include <vector>
 
 #include "core/view/render.hpp"
 #include "hal/unit.hpp"
@@ -19,12 +21,34 @@ struct Name {
   int digits = 0;
 };
 
+/// What ffmpeg is asked for, by the file's ending. The usual players want H.264's pixels in fours, and so an even
+/// number of them along both sides. WebP moves on pages, where they show pictures.
+const std::vector<std::string>* encoding_of(const std::string& path) {
+  using Words = std::vector<std::string>;
+  static const Words kH264 = {"-vf",      "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white",
+                              "-c:v",     "libx264",
+                              "-preset",  "veryfast",
+                              "-crf",     "18",
+                              "-pix_fmt", "yuv420p",
+                              "-f"};
+  const auto in = [](Words words, const char* container) {
+    words.emplace_back(container);
+    return words;
+  };
+  static const std::map<std::string, Words> kEndings = {
+      {".mp4", in(kH264, "mp4")},
+      {".mkv", in(kH264, "matroska")},
+      {".webp", {"-c:v", "libwebp_anim", "-lossless", "1", "-loop", "0", "-f", "webp"}}};
+  const auto found = kEndings.find(fs::path(path).extension().string());
+  return found == kEndings.end() ? nullptr : &found->second;
+}
+
 hal::Result<Name> name_of(const std::string& path) {
   const hal::Error forms{"the film '" + path +
-                         "' must end in .mp4 or .mkv, or be pictures: 'FOLDER/' or 'FOLDER/%06d.png'"};
+                         "' must end in .mp4, .mkv or .webp, or be pictures: 'FOLDER/' or 'FOLDER/%06d.png'"};
   if (path.ends_with('/')) return Name{path, ".png", 6};
   const std::string ending = fs::path(path).extension().string();
-  if (ending == ".mp4" || ending == ".mkv") return Name{};
+  if (encoding_of(path) != nullptr) return Name{};
   const std::size_t begin = path.find('%');
   const std::size_t end = path.find('d', begin == std::string::npos ? 0 : begin);
   if (ending != ".png" || begin == std::string::npos || end == std::string::npos) return forms;
@@ -80,37 +104,24 @@ std::string Film::picture_path(std::int64_t frame) const {
 hal::Status Film::start_encoder(const std::string& pixels) {
   std::uint32_t size[2];
   std::memcpy(size, pixels.data(), sizeof size);
-  const bool mkv = fs::path(config_.path).extension() == ".mkv";
-  // The usual players want pixels in fours, and so an even number of them along both sides.
-  auto encoder =
-      hal::Program::start(hal::find_program("ffmpeg"), {"-hide_banner",
-                                                        "-loglevel",
-                                                        "error",
-                                                        "-nostats",
-                                                        "-y",
-                                                        "-f",
-                                                        "rawvideo",
-                                                        "-pix_fmt",
-                                                        "bgr0",
-                                                        "-s",
-                                                        std::to_string(size[0]) + "x" + std::to_string(size[1]),
-                                                        "-r",
-                                                        hal::format_number(config_.frames_per_second),
-                                                        "-i",
-                                                        "pipe:0",
-                                                        "-vf",
-                                                        "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white",
-                                                        "-c:v",
-                                                        "libx264",
-                                                        "-preset",
-                                                        "veryfast",
-                                                        "-crf",
-                                                        "18",
-                                                        "-pix_fmt",
-                                                        "yuv420p",
-                                                        "-f",
-                                                        mkv ? "matroska" : "mp4",
-                                                        "file:" + file_->part()});
+  std::vector<std::string> words = {"-hide_banner",
+                                    "-loglevel",
+                                    "error",
+                                    "-nostats",
+                                    "-y",
+                                    "-f",
+                                    "rawvideo",
+                                    "-pix_fmt",
+                                    "bgr0",
+                                    "-s",
+                                    std::to_string(size[0]) + "x" + std::to_string(size[1]),
+                                    "-r",
+                                    hal::format_number(config_.frames_per_second),
+                                    "-i",
+                                    "pipe:0"};
+  words.insert(words.end(), encoding_of(config_.path)->begin(), encoding_of(config_.path)->end());
+  words.push_back("file:" + file_->part());
+  auto encoder = hal::Program::start(hal::find_program("ffmpeg"), words);
   if (!encoder.ok()) return encoder.error();
   encoder_ = std::move(encoder).value();
   frame_bytes_ = pixels.size();

@@ -13,7 +13,7 @@
 namespace tandem::core {
 
 struct FilmConfig {
-  std::string path;  ///< FILE.mp4 or .mkv; FOLDER/ or FOLDER/NAME%06d.png
+  std::string path;  ///< FILE.mp4, .mkv or .webp; FOLDER/ or FOLDER/NAME%06d.png
   double frames_per_second = 25.0;
   PictureLook look;
 };

@@ -245,7 +245,7 @@ TEST(Pictures, ThatCannotBeDrawnAreClearErrors) {
   fails({"--picture", "p.svg", "--picture-region", "1,1,2"}, 2, "--picture-region");
   fails({"--povray", "a.svg"}, 1, "must end in .pov");
   fails({"--povray", "/no/such/folder/a.pov"}, 1, "/no/such/folder");
-  fails({"--film", "a.avi"}, 1, ".mp4 or .mkv");
+  fails({"--film", "a.avi"}, 1, ".mp4, .mkv or .webp");
   fails({"--film", kExperiment + "/%06d.png"}, 1, "the folder");
   fails({"--film", "a/", "--film-every", "0"}, 2, "--film-every");
   fails({"--film", "/no/such/folder/a.mp4"}, 1, has_program("ffmpeg") ? "/no/such/folder" : "ffmpeg");

@@ -79,6 +79,16 @@ TEST_F(Films, FeedFramesOfOneSizeToTheEncoderAndPutTheFilmInItsPlace) {
   EXPECT_NE(called.find("-r 25 "), std::string::npos) << called;
 }
 
+TEST_F(Films, ThatPagesShowAsPicturesAreWebP) {
+  ffmpeg_is(kKeeps);
+  const auto film = open("a.webp");
+  ASSERT_NE(film, nullptr);
+  ASSERT_TRUE(film->add(of_robots(1)).ok());
+  ASSERT_TRUE(film->close().ok());
+  EXPECT_NE(text_of("bin/called").find("-lossless 1 -loop 0 -f webp file:"), std::string::npos)
+      << text_of("bin/called");
+}
+
 TEST_F(Films, WhoseEncoderDiesSayWithWhichWordsAndLeaveNothing) {
   ffmpeg_is("head -c 100000 > /dev/null\necho 'hello' >&2\necho 'No space left on device' >&2\nexit 1\n");
   const auto film = open("a.mp4");
