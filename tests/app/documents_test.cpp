@@ -1,16 +1,25 @@
 // The documents tell the truth: their code builds and runs as printed, their commands, options and links exist.
+#include <algorithm>
+#include <atomic>
+#include <cctype>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <map>
 #include <regex>
 #include <set>
+#include <thread>
 
+#include "tests/app/pages.hpp"
 #include "tests/checkout.hpp"
 #include "tests/scenarios/process.hpp"
 
 namespace tandem {
 namespace {
 
+using pages::Command;
+using pages::documents;
+using pages::named_blocks;
+using pages::Page;
 using scenarios::Folder;
 using scenarios::Tandem;
 using scenarios::text_of;
@@ -18,49 +27,14 @@ namespace fs = std::filesystem;
 
 const fs::path kTop = test::kSourceDir;
 
-/// README.md, the pages under docs, and those that stand beside the code that they explain.
-std::vector<fs::path> documents() {
-  std::vector<fs::path> all = {kTop / "README.md"};
-  for (const char* folder :
-       {"docs", "app", "bench", "bridges", "core", "mixed_reality", "studies", "tests", "validate"}) {
-    for (const auto& entry : fs::recursive_directory_iterator(kTop / folder)) {
-      if (entry.path().extension() == ".md") all.push_back(entry.path());
-    }
-  }
-  return all;
-}
-
 std::vector<std::smatch> matches(const std::string& text, const std::regex& pattern) {
   return {std::sregex_iterator(text.begin(), text.end(), pattern), std::sregex_iterator()};
-}
-
-/// Code blocks that carry a file's name after their language, by that name.
-std::map<std::string, std::string> named_blocks(const std::string& markdown) {
-  static const std::regex kBlock("```\\w+ (\\S+)\n([^`]*)```");
-  std::map<std::string, std::string> blocks;
-  for (const std::smatch& m : matches(markdown, kBlock)) blocks[m[1]] = m[2];
-  return blocks;
 }
 
 /// Without its code blocks.
 std::string prose(const std::string& markdown) {
   static const std::regex kBlock("```[^`]*```");
   return std::regex_replace(markdown, kBlock, "");
-}
-
-/// The shell block that contains `part`.
-std::string shell_block(const std::string& markdown, const std::string& part) {
-  static const std::regex kBlock("```sh\n([^`]*)```");
-  for (const std::smatch& m : matches(markdown, kBlock)) {
-    if (m.str(1).find(part) != std::string::npos) return m[1];
-  }
-  return {};
-}
-
-void replace(std::string& text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  ASSERT_NE(at, std::string::npos) << "no \"" << from << "\" in:\n" << text;
-  text.replace(at, from.size(), to);
 }
 
 /// Mean distance from the origin at each tick of a trajectory file.
@@ -82,83 +56,120 @@ std::map<long, double> mean_distances(const fs::path& csv) {
   return means;
 }
 
-TEST(Readme, ItsFirstControllerBuildsRunsAndDoesWhatItSays) {
-  const std::string readme = text_of(kTop / "README.md");
-  Folder folder;
-  const auto blocks = named_blocks(readme);
-  for (const char* name : {"seek_light.cpp", "CMakeLists.txt", "seek_light.xml"}) {
-    ASSERT_TRUE(blocks.contains(name)) << name;
-    folder.write(name, blocks.at(name));
-  }
-  // As printed, but for where the clone is, and for the launcher, which would build another preset than the one under
-  // test.
-  std::string commands = shell_block(readme, "-DTandem_DIR");
-  replace(commands, "TANDEM=~/tandem", "TANDEM=" + kTop.string());
-  replace(commands, "$TANDEM/tandem run", std::string(test::kBuildDir) + "/bin/tandem run");
-  folder.write("commands.sh", commands);
-  const std::string run = "cd '" + folder.path().string() + "' && sh -e commands.sh >log 2>&1 </dev/null";
-  ASSERT_EQ(std::system(run.c_str()), 0) << text_of(folder.path() / "log");
-
-  // The control interface is linked as it was built, and is neither shown nor looked for elsewhere.
-  const std::string log = text_of(folder.path() / "log");
-  EXPECT_EQ(matches(log, std::regex("Building CXX object")).size(), 1U) << log;
-  const std::string module = "'" + (folder.path() / "build/libseek_light.so").string() + "'";
+/// That the control interface is linked as it was built, and is neither shown nor looked for elsewhere.
+void check_light_seeker(const Page& page) {
+  const std::string log = page.log();
+  const std::string module = "'" + (page.folder() / "build/libseek_light.so").string() + "'";
   for (const char* const symbols : {"nm -DC --defined-only ", "nm -DCu "}) {
-    ASSERT_EQ(std::system((symbols + module + " >'" + (folder.path() / "symbols").string() + "'").c_str()), 0);
-    EXPECT_EQ(text_of(folder.path() / "symbols").find("tandem::"), std::string::npos) << symbols;
+    const fs::path listed = page.folder() / "symbols";
+    ASSERT_EQ(std::system((symbols + module + " >'" + listed.string() + "'").c_str()), 0);
+    EXPECT_EQ(text_of(listed).find("tandem::"), std::string::npos) << symbols;
   }
-
-  EXPECT_NE(text_of(folder.path() / "end.svg").find("20 × e-puck"), std::string::npos);
-  const auto distances = mean_distances(folder.path() / "poses.csv");
+  EXPECT_NE(text_of(page.folder() / "end.svg").find("20 × e-puck"), std::string::npos);
+  const auto distances = mean_distances(page.folder() / "poses.csv");
   ASSERT_EQ(distances.rbegin()->first, 399);
   EXPECT_GT(distances.at(0), 0.8);
   EXPECT_LT(distances.at(399), 0.3);
 }
 
-TEST(Hooks, TheirExampleBuildsRunsAndDoesWhatItSays) {
-  const std::string page = text_of(kTop / "docs/hooks.md");
-  Folder folder;
-  const auto blocks = named_blocks(page);
-  for (const char* name : {"crossing.cpp", "CMakeLists.txt", "crossing.xml"}) {
-    ASSERT_TRUE(blocks.contains(name)) << name;
-    folder.write(name, blocks.at(name));
-  }
-  std::string commands = shell_block(page, "-DTandem_DIR");
-  replace(commands, "TANDEM=~/tandem", "TANDEM=" + kTop.string());
-  replace(commands, "$TANDEM/tandem run", std::string(test::kBuildDir) + "/bin/tandem run");
-  folder.write("commands.sh", commands);
-  const std::string run = "cd '" + folder.path().string() + "' && sh -e commands.sh >log 2>&1 </dev/null";
-  ASSERT_EQ(std::system(run.c_str()), 0) << text_of(folder.path() / "log");
-
-  // The wall costs time, and the second trial starts again at tick 0.
+/// That the wall costs time, and the second trial starts again at tick 0.
+void check_hooks(const Page& page) {
   static const std::regex kTicks("without: ([0-9]+) ticks\nwith a wall: ([0-9]+) ticks\n");
-  const std::string log = text_of(folder.path() / "log");
+  const std::string log = page.log();
   std::smatch ticks;
   ASSERT_TRUE(std::regex_search(log, ticks, kTicks)) << log;
   EXPECT_GT(std::stol(ticks[1]), 300);  // 3.2 m at 10 cm/s and less
   EXPECT_GT(std::stol(ticks[2]), std::stol(ticks[1]));
-  EXPECT_TRUE(fs::exists(folder.path() / "end.svg"));
+  EXPECT_TRUE(fs::exists(page.folder() / "end.svg"));
 }
 
-TEST(RobotFiles, ItsRobotsRunAsPrinted) {
-  const std::string page = text_of(kTop / "docs/robot-files.md");
-  Folder folder;
-  const auto blocks = named_blocks(page);
-  for (const char* name : {"crabs.xml", "crabs_run.xml"}) {
-    ASSERT_TRUE(blocks.contains(name)) << name;
-    folder.write(name, blocks.at(name));
-  }
-  std::string commands = shell_block(page, "describe crab --in");
-  for (std::size_t at = 0; (at = commands.find("./tandem ", at)) != std::string::npos;)
-    commands.replace(at, 9, std::string(test::kBuildDir) + "/bin/tandem ");
-  folder.write("commands.sh", commands);
-  const std::string run = "cd '" + folder.path().string() + "' && sh -e commands.sh >log 2>&1 </dev/null";
-  ASSERT_EQ(std::system(run.c_str()), 0) << text_of(folder.path() / "log");
-  const std::string log = text_of(folder.path() / "log");
+void check_robot_files(const Page& page) {
+  const std::string log = page.log();
   for (const char* part : {"good: 2 kinds of robots: crab, old-crab", "robot <crab>: An invented robot on two wheels.",
                            "mount 11: bearing -30 deg", "(crabs.xml:17)"})
     EXPECT_NE(log.find(part), std::string::npos) << part << "\n" << log;
-  EXPECT_NE(text_of(folder.path() / "crabs.svg").find("5 × old-crab"), std::string::npos);
+  EXPECT_NE(text_of(page.folder() / "crabs.svg").find("5 × old-crab"), std::string::npos);
+}
+
+void check_controllers(const Page& page) {
+  const std::string log = page.log();
+  std::vector<double> covered;
+  static const std::regex kTrial("legs of [0-9.]+ s: ([0-9.]+)\n");
+  for (const std::smatch& m : matches(log, kTrial)) covered.push_back(std::stod(m[1]));
+  ASSERT_EQ(covered.size(), 3U) << log;
+  EXPECT_LT(covered[0], covered[2]) << "longer legs cover more";
+  const std::string report = text_of(page.folder() / "scouts.json");
+  EXPECT_NEAR(std::stod(scenarios::json_value(report, "covered")), covered[2], 1e-4);
+  const std::string picture = text_of(page.folder() / "scouts.svg");
+  EXPECT_NE(picture.find("<polygon"), std::string::npos);
+  EXPECT_TRUE(picture.find(">walk</text>") != std::string::npos || picture.find(">turn</text>") != std::string::npos);
+}
+
+/// What must have come of a page's commands, besides that they went well.
+const std::map<std::string, void (*)(const Page&)> kChecks = {{"tutorial.md", check_light_seeker},
+                                                              {"hooks.md", check_hooks},
+                                                              {"robot-files.md", check_robot_files},
+                                                              {"controllers.md", check_controllers}};
+
+std::vector<fs::path> pages_with_commands() {
+  std::vector<fs::path> pages = documents();
+  std::erase_if(pages, [](const fs::path& page) {
+    return std::ranges::none_of(pages::commands_of(text_of(page)),
+                                [](const Command& c) { return c.kind == Command::Kind::Typed; });
+  });
+  return pages;
+}
+
+/// Pages mostly wait for programs, so those of the tests that will run are done side by side before the first of them.
+class Pages : public testing::TestWithParam<fs::path> {
+ protected:
+  static void SetUpTestSuite() {
+    const testing::TestSuite& suite = *testing::UnitTest::GetInstance()->current_test_suite();
+    const std::vector<fs::path> all = pages_with_commands();
+    std::vector<fs::path> chosen;
+    for (int i = 0; i < suite.total_test_count(); ++i) {
+      if (suite.GetTestInfo(i)->should_run()) chosen.push_back(all.at(static_cast<std::size_t>(i)));
+    }
+    for (const fs::path& page : chosen) done_.try_emplace(page, page);
+    std::atomic<std::size_t> next = 0;
+    std::vector<std::thread> workers;
+    for (int i = 0; i < 4; ++i) {
+      workers.emplace_back([&] {
+        for (std::size_t n = 0; (n = next++) < chosen.size();) done_.at(chosen[n]).run();
+      });
+    }
+    for (std::thread& worker : workers) worker.join();
+  }
+  static std::map<fs::path, Page> done_;
+};
+std::map<fs::path, Page> Pages::done_;
+
+TEST_P(Pages, CommandsRunAsPrinted) {
+  const Page& page = done_.at(GetParam());
+  ASSERT_EQ(page.failed(), "") << page.log();
+  const auto check = kChecks.find(GetParam().filename().string());
+  if (check != kChecks.end()) check->second(page);
+}
+
+INSTANTIATE_TEST_SUITE_P(Documents, Pages, testing::ValuesIn(pages_with_commands()), [](const auto& page) {
+  std::string name = pages::name_of(page.param);
+  std::ranges::replace_if(
+      name, [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
+  return name;
+});
+
+TEST(Documents, RunAllCommandsButAFew) {
+  int not_run = 0;
+  for (const fs::path& page : documents()) {
+    for (const Command& command : pages::commands_of(text_of(page))) {
+      EXPECT_NE(command.kind, Command::Kind::Astray) << page << ":" << command.line << ": not in a block `sh`:\n"
+                                                     << command.text;
+      if (command.kind != Command::Kind::NotRun) continue;
+      EXPECT_NE(command.text, "") << page << ":" << command.line << ": no reason";
+      ++not_run;
+    }
+  }
+  EXPECT_LE(not_run, 15);
 }
 
 TEST(RobotFiles, ShowsAKindAsTheProgramPrintsIt) {
@@ -167,34 +178,6 @@ TEST(RobotFiles, ShowsAKindAsTheProgramPrintsIt) {
   ASSERT_EQ(describe.wait(), 0);
   EXPECT_NE(text_of(kTop / "docs/robot-files.md").find("```xml\n" + describe.output() + "```"), std::string::npos)
       << "print it anew: ./tandem describe e-puck --xml";
-}
-
-TEST(Controllers, TheirExampleBuildsRunsAndDoesWhatItSays) {
-  const std::string page = text_of(kTop / "docs/controllers.md");
-  Folder folder;
-  const auto blocks = named_blocks(page);
-  for (const char* name : {"scout.hpp", "scout.cpp", "lessons.cpp", "CMakeLists.txt", "scouts.xml"}) {
-    ASSERT_TRUE(blocks.contains(name)) << name;
-    folder.write(name, blocks.at(name));
-  }
-  std::string commands = shell_block(page, "-DTandem_DIR");
-  replace(commands, "TANDEM=~/tandem", "TANDEM=" + kTop.string());
-  replace(commands, "$TANDEM/tandem run", std::string(test::kBuildDir) + "/bin/tandem run");
-  folder.write("commands.sh", commands);
-  const std::string run = "cd '" + folder.path().string() + "' && sh -e commands.sh >log 2>&1 </dev/null";
-  ASSERT_EQ(std::system(run.c_str()), 0) << text_of(folder.path() / "log");
-
-  const std::string log = text_of(folder.path() / "log");
-  std::vector<double> covered;
-  static const std::regex kTrial("legs of [0-9.]+ s: ([0-9.]+)\n");
-  for (const std::smatch& m : matches(log, kTrial)) covered.push_back(std::stod(m[1]));
-  ASSERT_EQ(covered.size(), 3U) << log;
-  EXPECT_LT(covered[0], covered[2]) << "longer legs cover more";
-  const std::string report = text_of(folder.path() / "scouts.json");
-  EXPECT_NEAR(std::stod(scenarios::json_value(report, "covered")), covered[2], 1e-4);
-  const std::string picture = text_of(folder.path() / "scouts.svg");
-  EXPECT_NE(picture.find("<polygon"), std::string::npos);
-  EXPECT_TRUE(picture.find(">walk</text>") != std::string::npos || picture.find(">turn</text>") != std::string::npos);
 }
 
 TEST(Plugins, TheirPagesShowTheVerySourcesOfTheExamples) {
@@ -226,7 +209,7 @@ TEST(Documents, NameOnlyCommandsAndOptionsThatExist) {
   static const std::regex kOption("(--[a-z]+)");
   static const std::regex kUse(R"(\./tandem ([a-z]+)([^`\n|]*))");
   const std::set<std::string> commands = words_of_help({"--help"}, kSubcommand);
-  const std::set<std::string> of_launcher = {"test", "build", "format", "package", "python"};
+  const std::set<std::string> of_launcher = {"test", "build", "docs", "format", "package", "python"};
   ASSERT_TRUE(commands.contains("run"));
   std::map<std::string, std::set<std::string>> options;
   int used = 0;
@@ -235,14 +218,17 @@ TEST(Documents, NameOnlyCommandsAndOptionsThatExist) {
     for (const std::smatch& use : matches(text, kUse)) {
       ++used;
       const std::string command = use[1];
-      if (of_launcher.contains(command)) continue;
+      if (of_launcher.contains(command) || command == "emulate") continue;  // emulators have options of their own
       EXPECT_TRUE(commands.contains(command)) << file << ": " << use.str();
       if (!commands.contains(command)) continue;
       if (!options.contains(command)) {
         options[command] = words_of_help({command, "--help"}, kOption);
-        for (const char* word : {"new", "check"}) {
-          if (command == "plugin") options[command].merge(words_of_help({command, word, "--help"}, kOption));
-        }
+        const std::vector<std::string> further = command == "plugin" ? std::vector<std::string>{"new", "check"}
+                                                 : command == "calibrate"
+                                                     ? std::vector<std::string>{"board", "camera", "arena"}
+                                                     : std::vector<std::string>{};
+        for (const std::string& word : further)
+          options[command].merge(words_of_help({command, word, "--help"}, kOption));
       }
       const std::string rest = use[2];
       for (const std::smatch& option : matches(rest, kOption)) {
@@ -268,15 +254,34 @@ TEST(Documents, OfTrackersNameEveryAttributeOfThem) {
   }
 }
 
+/// A page's headings as links name them.
+std::set<std::string> anchors_of(const fs::path& page) {
+  static const std::regex kHeading("(^|\n)#+ ([^\n]*)");
+  const std::string text = prose(text_of(page));
+  std::set<std::string> anchors;
+  for (const std::smatch& heading : matches(text, kHeading)) {
+    std::string anchor;
+    for (const char c : heading.str(2)) {
+      if (c == ' ' || c == '-' || c == '_' || std::isalnum(static_cast<unsigned char>(c)) != 0)
+        anchor += c == ' ' ? '-' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    }
+    anchors.insert(anchor);
+  }
+  return anchors;
+}
+
 TEST(Documents, LinkOnlyToWhatExists) {
-  static const std::regex kLink(R"(\]\(([^)#:]+)\))");
+  static const std::regex kLink(R"(\]\(([^)#:]*)(#([^)]+))?\))");
   static const std::regex kFolder(R"(\| `([a-z_]+/)` \|)");
   int links = 0;
   for (const fs::path& file : documents()) {
     const std::string text = prose(text_of(file));
     for (const std::smatch& link : matches(text, kLink)) {
       ++links;
-      EXPECT_TRUE(fs::exists(file.parent_path() / link.str(1))) << file << ": " << link.str(1);
+      const fs::path to = link.str(1).empty() ? file : file.parent_path() / link.str(1);
+      EXPECT_TRUE(fs::exists(to)) << file << ": " << link.str(1);
+      if (link[3].matched && to.extension() == ".md")
+        EXPECT_TRUE(anchors_of(to).contains(link.str(3))) << file << ": " << link.str(1) << link.str(2);
     }
     for (const std::smatch& folder : matches(text, kFolder)) {
       EXPECT_TRUE(fs::is_directory(kTop / folder.str(1))) << file << ": " << folder.str(1);
@@ -287,6 +292,48 @@ TEST(Documents, LinkOnlyToWhatExists) {
 
 TEST(Documents, StayWithinTheirWords) {
   EXPECT_EQ(std::system(("'" + (kTop / "scripts/doc-words").string() + "' --most 35000 >/dev/null").c_str()), 0);
+}
+
+TEST(Documents, AreAllReachedFromTheFirst) {
+  static const std::regex kLink(R"(\]\(([^)#:]+\.md)(#[^)]*)?\))");
+  std::vector<fs::path> todo = {kTop / "README.md"};
+  std::set<fs::path> reached;
+  while (!todo.empty()) {
+    const fs::path page = todo.back();
+    todo.pop_back();
+    if (!reached.insert(page).second) continue;
+    const std::string text = text_of(page);
+    for (const std::smatch& link : matches(text, kLink))
+      todo.push_back((page.parent_path() / link.str(1)).lexically_normal());
+  }
+  for (const fs::path& page : documents()) EXPECT_TRUE(reached.contains(page)) << page;
+}
+
+TEST(Documents, NameTheVersionThatItIs) {
+  Folder folder;
+  Tandem tandem({"--version"}, folder.path());
+  ASSERT_EQ(tandem.wait(), 0);
+  const std::string version = tandem.output().substr(0, tandem.output().find_first_of(" \n"));
+  EXPECT_NE(text_of(kTop / "CITATION.cff").find("\nversion: " + version + "\n"), std::string::npos) << version;
+  EXPECT_NE(text_of(kTop / "CHANGELOG.md").find("\n## " + version + "\n"), std::string::npos) << version;
+}
+
+/// Words of messages in the first column of a table.
+TEST(Faq, QuotesMessagesThatThereAre) {
+  static const std::regex kQuoted("\n\\| `([^`]+)` \\|");
+  std::string sources = text_of(kTop / "tandem");
+  for (const char* folder : {"app", "bridges", "controllers", "core", "hal", "mixed_reality", "study", "window"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(kTop / folder)) {
+      if (entry.path().extension() == ".cpp" || entry.path().extension() == ".js") sources += text_of(entry.path());
+    }
+  }
+  const std::string page = text_of(kTop / "docs/faq.md");
+  int quoted = 0;
+  for (const std::smatch& message : matches(page, kQuoted)) {
+    ++quoted;
+    EXPECT_NE(sources.find(message.str(1)), std::string::npos) << message.str(1);
+  }
+  EXPECT_GT(quoted, 20);
 }
 
 TEST(Documents, ListEveryDecision) {

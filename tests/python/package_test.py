@@ -102,7 +102,7 @@ class Package(unittest.TestCase):
 
     def test_does_what_its_documentation_shows(self):
         with open(os.path.join(TOP, "docs", "python.md")) as file:
-            blocks = re.findall(r"```python\n(.*?)```", file.read(), re.S)
+            blocks = re.findall(r"```python[^\n]*\n(.*?)```", file.read(), re.S)
         self.assertGreater(len(blocks), 5)
         with tempfile.TemporaryDirectory() as folder:
             os.symlink(CONFIGS, os.path.join(folder, "configs"))
@@ -128,7 +128,7 @@ class Package(unittest.TestCase):
         except ImportError:
             self.skipTest("no python3-mypy here")
         with open(os.path.join(TOP, "docs", "python.md")) as file:
-            blocks = re.findall(r"```python\n(.*?)```", file.read(), re.S)
+            blocks = re.findall(r"```python[^\n]*\n(.*?)```", file.read(), re.S)
         with tempfile.TemporaryDirectory() as folder:
             program = os.path.join(folder, "shown.py")
             with open(program, "w") as file:
