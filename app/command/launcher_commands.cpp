@@ -33,6 +33,10 @@ struct Test : Launcher {
   }
 };
 
+struct Docs : Launcher {
+  void describe(hal::CommandLine& line) { line.word("folder", words, "Where to; default: build/docs").folder(); }
+};
+
 struct Format : Launcher {
   bool check = false;
   void describe(hal::CommandLine& line) { line.flag("--check", check, "Only say which files differ"); }
@@ -56,8 +60,9 @@ hal::Result<int> run_nothing(const Launcher& /*unused*/) {
   return hal::Error{"this is a command of the launcher at the top of a checkout"};
 }
 
-constexpr std::array<hal::CommandType, 5> kCommands = {
+constexpr std::array<hal::CommandType, 6> kCommands = {
     hal::command_type<Build, run_nothing>("build", "Only build."),
+    hal::command_type<Docs, run_nothing>("docs", "Make the documentation a site that can be searched."),
     hal::command_type<Format, run_nothing>("format", "Rewrite every source file in the project's style."),
     hal::command_type<Package, run_nothing>("package", "Make Debian packages."),
     hal::command_type<Python, run_nothing>("python", "Run the machine's Python with `import tandem`."),

@@ -309,6 +309,21 @@ TEST(Documents, AreAllReachedFromTheFirst) {
   for (const fs::path& page : documents()) EXPECT_TRUE(reached.contains(page)) << page;
 }
 
+TEST(Documents, MakeASiteWithoutADeadLink) {
+  for (const char* const program : {"/usr/bin/mkdocs", "/usr/bin/doxygen"}) {
+    if (!fs::exists(program)) GTEST_SKIP() << program << " is not here";
+  }
+  Folder folder;
+  const std::string site = (folder.path() / "site").string();
+  const std::string make = "/usr/bin/python3 '" + (kTop / "scripts/site").string() + "' '" + test::kBuildDir +
+                           "/bin/tandem' '" + site + "' >'" + (folder.path() / "log").string() + "' 2>&1";
+  ASSERT_EQ(std::system(make.c_str()), 0) << text_of(folder.path() / "log");
+  for (const char* const page : {"index.html", "tutorial.html", "parts/robots.html", "interface/index.html"})
+    EXPECT_TRUE(fs::exists(fs::path(site) / page)) << page;
+  EXPECT_NE(text_of(fs::path(site) / "parts/robots.html").find("A small robot on two wheels"), std::string::npos);
+  EXPECT_NE(text_of(fs::path(site) / "search/search_index.json").find("foot-bot"), std::string::npos);
+}
+
 TEST(Documents, NameTheVersionThatItIs) {
   Folder folder;
   Tandem tandem({"--version"}, folder.path());
