@@ -350,7 +350,7 @@ class Page {
       if (!flies(r)) continue;
       text(x_px(r.x_m), y_px(r.y_m) + d_.kinds[r.kind].radius_m * px_per_m_ + 12.0, 10.0, kFaintInk,
            " class=\"height\" text-anchor=\"middle\" stroke=\"#ffffff\" stroke-width=\"2\" paint-order=\"stroke\"",
-           "z " + length_text(r.z_m));
+           height_text(r.z_m));
     }
   }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -79,12 +80,16 @@ void add_heights(const Drawing& d, const Shows& shows, const Add& add) {
     high_m = std::max(high_m, r.z_m);
   }
   if (high_m == 0.0) return;
-  const std::string low = length_text(low_m), high = length_text(high_m);
+  const std::string low = height_text(low_m), high = height_text(high_m);
   add("<path d=\"M0 7V-7M-4 -3L0 -7L4 -3\" fill=\"none\" stroke=\"#68707b\" stroke-width=\"1.6\"/>",
-      "flying at z " + (low == high ? low : low + " to " + high));
+      "flying at " + (low == high ? low : low + " to " + high));
 }
 
 }  // namespace
+
+std::string height_text(double z_m) {
+  return hal::format_number(std::round(100.0 * z_m) / 100.0) + " m";
+}
 
 bool any_objects(const Drawing& drawing, bool movable) {
   const auto is = [movable](const auto& object) { return object.movable == movable; };

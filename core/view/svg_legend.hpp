@@ -25,6 +25,9 @@ struct LegendEntry {
 std::vector<LegendEntry> legend_of(const Drawing& drawing, const PictureLook& look, bool full_detail,
                                    const std::function<bool(const Drawing::Robot&)>& shows);
 
+/// Of a robot in the air, to the centimetre.
+std::string height_text(double z_m);
+
 bool any_objects(const Drawing& drawing, bool movable);
 
 }  // namespace tandem::core

@@ -156,8 +156,8 @@ TEST(Svg, TellsWhatLampsPathsAndHeightsAre) {
   d.trails = {{0, 0, 2}};
   const std::string svg = to_svg(d, {.trails_s = 10.0});
   EXPECT_EQ(why_not_well_formed(svg), "");
-  for (const char* entry : {">1 with red LEDs<", ">1 with blue LEDs<", ">flying at z 80 cm to 1.2 m<",
-                            ">path of the last 10 s<", ">z 80 cm<", ">z 1.2 m<"})
+  for (const char* entry : {">1 with red LEDs<", ">1 with blue LEDs<", ">flying at 0.8 m to 1.2 m<",
+                            ">path of the last 10 s<", ">0.8 m<", ">1.2 m<"})
     EXPECT_EQ(count(svg, entry), 1U) << entry;
 }
 
