@@ -79,16 +79,17 @@ function material() {
       void main() {
         vec3 lit = vec3(floor(words.z / 2048.0) / 31.0, floor(mod(words.z, 2048.0) / 32.0) / 63.0, mod(words.z, 32.0) / 31.0);
         color = over.w > 0.0 ? over.rgb : words.z > 0.0 ? lit : tint;
-        float heading = words.y * ${(2 * Math.PI / 65536).toFixed(12)};
-        vec3 place = vec3(position.xy, words.x / 1000.0);
-        float foot = (projectionMatrix * viewMatrix * vec4(place, 1.0)).w;
-        place.z += size.y;
-        vec4 middle = projectionMatrix * viewMatrix * vec4(place, 1.0);
-        vec4 ahead = projectionMatrix * viewMatrix * vec4(place + vec3(cos(heading), sin(heading), 0.0) * size.x, 1.0);
+        vec4 middle = projectionMatrix * (viewMatrix * vec4(position.xy, words.x / 1000.0 + size.y, 1.0));
+        float foot = middle.w - projectionMatrix[2][3] * viewMatrix[2][2] * size.y;  // how far away its base is
         float wide = size.x * projectionMatrix[1][1] * height / middle.w;
-        vec2 to = ahead.xy / ahead.w - middle.xy / middle.w;
-        to.x *= projectionMatrix[1][1] / projectionMatrix[0][0];
-        front = wide > 7.0 ? normalize(vec2(to.x, -to.y) + vec2(1e-9)) : vec2(0.0);
+        front = vec2(0.0);
+        if (wide > 7.0) {
+          float heading = words.y * ${(2 * Math.PI / 65536).toFixed(12)};
+          vec4 ahead = middle + projectionMatrix * (viewMatrix * vec4(cos(heading) * size.x, sin(heading) * size.x, 0.0, 0.0));
+          vec2 to = ahead.xy / ahead.w - middle.xy / middle.w;
+          to.x *= projectionMatrix[1][1] / projectionMatrix[0][0];
+          front = normalize(vec2(to.x, -to.y) + vec2(1e-9));
+        }
         gl_Position = size.x * projectionMatrix[1][1] * height / foot < fullFrom ? middle : vec4(2.0, 2.0, 2.0, 1.0);
         gl_PointSize = max(smallest, wide);
       }`,

@@ -15,7 +15,7 @@ export class Layers {
     this.panelHost = h('div', { class: 'layer-panels' });
     host.append(element, this.panelHost);
     this.material = new THREE.ShaderMaterial({
-      vertexShader: 'attribute vec4 tint; varying vec4 color; void main() { color = tint; gl_Position = projectionMatrix * viewMatrix * vec4(position, 1.0); }',
+      vertexShader: 'attribute vec4 tint; varying vec4 color; void main() { color = tint; gl_Position = projectionMatrix * (viewMatrix * vec4(position, 1.0)); }',
       fragmentShader: 'varying vec4 color; void main() { gl_FragColor = color; }',
       transparent: true,
       depthWrite: false,

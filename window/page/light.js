@@ -42,7 +42,7 @@ export class Shadows {
           high = vec3(place.zw, glow.a);
           shine = glow.rgb;
           floorAt = (place.xy + at - arena.xy) / arena.zw;
-          gl_Position = projectionMatrix * viewMatrix * vec4(place.xy + at, 0.0012, 1.0);
+          gl_Position = projectionMatrix * (viewMatrix * vec4(place.xy + at, 0.0012, 1.0));
         }`,
       fragmentShader: /* glsl */ `
         precision highp float;
@@ -77,7 +77,7 @@ export class Shadows {
           }
           float near = max(0.0, outside(at));
           if (max(abs(floorAt.x), abs(floorAt.y)) > 1.0) discard;
-          float beneath = max(0.0, exp(-near / min(0.03, 0.16 * own.x + 0.003)) - 0.1) / (1.0 + 6.0 * high.x);
+          float beneath = max(0.0, exp(-near / min(0.03, 0.16 * own.x + 0.003)) - 0.1) * max(0.0, 1.0 - 20.0 * high.x);
           float a = max(0.36 * dark / (1.0 + 0.5 * high.x), 0.3 * beneath);
           float lit = high.z * max(0.0, 0.75 * exp(-near / (0.55 * own.x)) - 0.015);
           gl_FragColor = vec4(shine * lit, a * (1.0 - 0.5 * lit));

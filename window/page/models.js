@@ -67,8 +67,11 @@ export function model(body, detail) {
   const shape = new Shape(height);
   let value = look.joints.length;  // the values of joints come first
   const links = look.links.map((link) => ({ ...link, number: link.held === undefined ? -1 : value++ }));
-  const volume = ({ low, high }) => low.reduce((product, at, k) => product * (high[k] - at), 1);
-  for (const link of links.sort((a, b) => volume(b) - volume(a))) {
+  const face = ({ low, high }) => {
+    const [, a, b] = low.map((at, k) => high[k] - at).sort((x, y) => x - y);
+    return a * b;
+  };
+  for (const link of links.sort((a, b) => face(b) - face(a))) {
     if (shape.triangles > most) break;
     const { low, high, on, color, number } = link;
     const paints = { color: color === undefined ? [1, 1, 1] : rgbOf(color), paint: color === undefined ? paint.kind : paint.own, moves: sitsOn(look, on), held: number, middle: (low[1] + high[1]) / 2 };
@@ -76,7 +79,7 @@ export function model(body, detail) {
   }
   look.lamps.forEach((lamp, number) => {
     const { at: [x, y, z], on } = lamp;
-    const paints = { color: [0.55, 0.56, 0.58], moves: sitsOn(look, on), paint: paint.led + number };
+    const paints = { color: [0.55, 0.56, 0.58], moves: sitsOn(look, on), paint: paint.led + number, middle: isBeacon(lamp) ? 1 : 0 };
     const wide = isBeacon(lamp) ? 0.42 * radius : Math.max(0.0025, 0.062 * radius) * (rows === 0 ? 1.4 : 1);
     const high = isBeacon(lamp) ? 0.07 * radius : wide;
     if (rows === 0) shape.flat([[x - wide, y, z + high], [x, y - wide, z + high], [x + wide, y, z + high], [x, y + wide, z + high]], [0, 0, 1], paints);
@@ -107,7 +110,7 @@ export function halos({ look }) {
 }
 
 const instanceCode = /* glsl */ `
-  attribute vec4 part;    // how the vertex moves, what it is painted with; the value that says whether it holds something, and its middle
+  attribute vec4 part;    // how the vertex moves, what it is painted with; the value that says whether it holds something, and its middle; of a beacon 1
   attribute vec4 pose;    // x, y, z, row in the table of LEDs or -1
   attribute vec4 turn;    // cosine and sine of the heading, roll and pitch
   attribute vec4 lit;     // mixed colour of lit LEDs; w: whether any is lit
@@ -172,9 +175,10 @@ const bodyShader = /* glsl */ `
   void main() {
     vec3 p = position, n = normal;
     bool holds = part.z > -0.5 && value(part.z) != 0.0;
+    if (part.y > 1.5 && part.w > 0.5 && !shines(ledColor())) p.xy *= 0.3;  // a beacon that is not lit is a bulb
     if (holds) p.y = part.w + 0.45 * (p.y - part.w);  // prongs close
     place(p, n);
-    gl_Position = projectionMatrix * viewMatrix * vec4(p, 1.0);
+    gl_Position = projectionMatrix * (viewMatrix * vec4(p, 1.0));
     vec3 base = part.y < 0.5 ? (holds ? 0.35 : 1.0) * tint : tint * kindColor;
     if (part.y < 1.5) {
       float bright = max(base.r, max(base.g, base.b));

@@ -28,7 +28,7 @@ export class Things {
           vec3 n = normalize(aboutZ(normal, pose.w));
           float low = p.z < pose.z + 0.001 && pose.z < 0.02 ? 0.78 : 1.0;  // the floor takes light away
           color = tint * lightOn(n) * low * (1.0 - 0.25 * hides * step(0.5, n.z));
-          gl_Position = projectionMatrix * viewMatrix * vec4(p, 1.0);
+          gl_Position = projectionMatrix * (viewMatrix * vec4(p, 1.0));
         }`,
       fragmentShader: 'varying vec3 color; void main() { gl_FragColor = vec4(color, 1.0); }',
       uniforms: { arena: { value: new THREE.Vector4(0, 0, 1, 1) }, cut: { value: 1 } },

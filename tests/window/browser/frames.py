@@ -11,7 +11,7 @@ TICKS_PER_S = os.sysconf("SC_CLK_TCK")
 from page import Page, Run
 
 SECONDS = 10.0
-SETTLING_S = 40.0  # quality goes down step by step
+SETTLING_S = 25.0  # quality goes down step by step
 EXPERIMENT = """<?xml version="1.0"?>
 <tandem>
   <framework><experiment length="0" ticks_per_second="10" random_seed="3"/></framework>
@@ -69,6 +69,20 @@ COUNT = """(() => {
 })()"""
 
 
+def tell(page, what):
+    root = page.driver.service.process.pid
+    used_s = processor_s(root)
+    begin = page.js(COUNT)
+    time.sleep(SECONDS)
+    end = page.js(COUNT)
+    used_s = processor_s(root) - used_s
+    shown = page.js("tandem.robots.shown")
+    pictures = max(1, end["pictures"] - begin["pictures"])
+    print(f"{what} ({shown['full']} in full, {shown['coarse']} as discs): {1000.0 * pictures / (end['now'] - begin['now']):.1f} pictures a second, "
+          f"{1000.0 * used_s / pictures:.0f} ms of processor time each in the browser, {end['script_ms']:.1f} ms of it in the page; "
+          f"{end['calls']} draw calls, {end['triangles']} triangles. {page.js('tandem.view.quality.text')}", flush=True)
+
+
 def measure(program, robots):
     size = round(0.6 * robots**0.5 + 1.0, 1)
     path = os.path.join(os.getcwd(), f"frames_{robots}.xml")
@@ -80,18 +94,10 @@ def measure(program, robots):
         page.open(run.address)
         page.driver.execute_script(TURN)
         page.until("the size", "tandem.camera.width_px === 800 && tandem.camera.height_px === 600")
-        time.sleep(SETTLING_S)
-        root = page.driver.service.process.pid
-        used_s = processor_s(root)
-        begin = page.js(COUNT)
-        time.sleep(SECONDS)
-        end = page.js(COUNT)
-        used_s = processor_s(root) - used_s
-        shown = page.js("tandem.robots.shown")
-        pictures = end["pictures"] - begin["pictures"]
-        print(f"{robots} robots ({shown['full']} in full, {shown['coarse']} as discs): {1000.0 * pictures / (end['now'] - begin['now']):.1f} pictures a second, "
-              f"{1000.0 * used_s / pictures:.0f} ms of processor time each in the browser, {end['script_ms']:.1f} ms of it in the page; "
-              f"{end['calls']} draw calls, {end['triangles']} triangles. {page.js('tandem.view.quality.text')}", flush=True)
+        for pinned in (True, False):
+            page.driver.execute_script("tandem.view.quality.pin(arguments[0])", pinned)
+            time.sleep(2.0 if pinned else SETTLING_S)
+            tell(page, f"{robots} robots, {'everything' if pinned else 'as quality allows'}")
     finally:
         page.close()
         run.stop()
