@@ -7,10 +7,13 @@
 #include <map>
 
 #include "app/command/command.hpp"
+#include "app/experiment/plugins.hpp"
 #include "app/outputs/report.hpp"
+#include "app/outputs/state_dump.hpp"
 #include "app/process/terminal.hpp"
 #include "core/record/csv_table.hpp"
 #include "core/record/record_reader.hpp"
+#include "core/record/record_source.hpp"
 #include "hal/element.hpp"
 #include "hal/json/json_access.hpp"
 #include "hal/output_file.hpp"
@@ -82,6 +85,28 @@ hal::Status write_report(const ExportOptions& options) {
   return hal::Error{"record '" + options.record + "' has no end: the run was killed, or the disk was full"};
 }
 
+/// What the record says of the state, as a run's dump has all of it.
+hal::Status write_dump(const ExportOptions& options) {
+  auto reader = core::RecordReader::open(options.record);
+  if (!reader.ok()) return reader.error();
+  const auto known = kinds_of_settings(hal::text_of(reader.value().start(), "settings"), options.record);
+  auto opened = core::RecordSource::open(options.record, &known->catalog);
+  if (!opened.ok()) return opened.error();
+  core::RecordSource& record = opened.value();
+  auto dump = StateDump::open(options.dump, 1);
+  if (!dump.ok()) return dump.error();
+  const auto state = [&record] { return core::StateView{record.space().stores(), record.seed(), record.ticks_done()}; };
+  std::optional<hal::Tick> last;
+  do {
+    if (!options.wants(record.ticks_done() - 1)) continue;
+    last = record.ticks_done();
+    if (const hal::Status written = dump.value().tick_done(state()); !written.ok()) return written;
+  } while (record.next());
+  if (!last) return hal::Error{"record '" + options.record + "' has no such ticks"};
+  record.go_to(*last);
+  return dump.value().close(state());
+}
+
 hal::Status print_contents(const ExportOptions& options) {
   auto opened = core::RecordReader::open(options.record);
   if (!opened.ok()) return opened.error();
@@ -133,6 +158,8 @@ void ExportOptions::describe(hal::CommandLine& line) {
   line.option("--hdf5", hdf5, "Write the tables as data sets to this file, for h5py, Matlab, …").file();
   line.option("--report", report, "Write what its run said at the end, as `tandem run --report` ('-': standard output)")
       .file();
+  line.option("--dump", dump, "Write every value that it has of the state as CSV, as `tandem run --dump` writes all")
+      .file();
   line.option("--table", stream, "Which table, as the record names it; default: in CSV 'pose', in HDF5 all");
   line.option("--fields", fields, "Of HDF5: only these fields, separated by commas").separated();
   line.option("--entities", entities, "Only of these, separated by commas; '*' stands for any text").separated();
@@ -144,16 +171,18 @@ void ExportOptions::describe(hal::CommandLine& line) {
 namespace {
 
 int export_record(const ExportOptions& options) {
-  if (const hal::Status apart =
-          check_apart({{"table", options.csv}, {"HDF5 file", options.hdf5}, {"report", options.report}},
-                      {{"record", options.record}});
+  if (const hal::Status apart = check_apart(
+          {{"table", options.csv}, {"HDF5 file", options.hdf5}, {"report", options.report}, {"dump", options.dump}},
+          {{"record", options.record}});
       !apart.ok())
     return complain(kBadInput, apart.error().message);
   hal::Status done;
-  if (options.csv.empty() && options.hdf5.empty() && options.report.empty()) done = print_contents(options);
+  if (options.csv.empty() && options.hdf5.empty() && options.report.empty() && options.dump.empty())
+    done = print_contents(options);
   if (!options.csv.empty()) done = write_csv(options);
   if (done.ok() && !options.hdf5.empty()) done = write_hdf5(options);
   if (done.ok() && !options.report.empty()) done = write_report(options);
+  if (done.ok() && !options.dump.empty()) done = write_dump(options);
   return done.ok() ? kDone : complain(kBadInput, done.error().message);
 }
 

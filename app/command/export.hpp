@@ -13,6 +13,7 @@ struct ExportOptions : core::TableChoice {
   std::string csv;     ///< file, or "-"; all empty: only say what the record holds
   std::string hdf5;    ///< file; empty: none
   std::string report;  ///< file, or "-"; empty: none
+  std::string dump;    ///< the same
 
   void describe(hal::CommandLine& line);
 };

@@ -40,24 +40,24 @@ hal::Result<StateDump> StateDump::open(const std::string& path, std::int64_t eve
   return dump;
 }
 
-hal::Status StateDump::write(const core::World& world) {
+hal::Status StateDump::write(const core::StateView& state) {
   if (!state_.ok()) return state_;
-  written_ = world.tick();
+  written_ = state.tick;
   std::string text;
-  const std::string tick = std::to_string(world.tick()) + ",";
-  for (const core::StateValue& v : core::state_values(world.state_view()))
+  const std::string tick = std::to_string(state.tick) + ",";
+  for (const core::StateValue& v : core::state_values(state))
     text += tick + core::csv_cell(v.who) + "," + v.what + "," + v.field + "," + v.value + "\n";
   state_ = file_.write(text);
   return state_;
 }
 
-hal::Status StateDump::tick_done(const core::World& world) {
-  if (every_ == 0 || world.tick() % every_ != 0 || !state_.ok()) return {};
-  return write(world);
+hal::Status StateDump::tick_done(const core::StateView& state) {
+  if (every_ == 0 || state.tick % every_ != 0 || !state_.ok()) return {};
+  return write(state);
 }
 
-hal::Status StateDump::close(const core::World& world) {
-  if (written_ != world.tick()) (void)write(world);
+hal::Status StateDump::close(const core::StateView& state) {
+  if (written_ != state.tick) (void)write(state);
   if (state_.ok()) return file_.commit();
   file_.keep_part();
   return state_;

@@ -1,4 +1,4 @@
-// Files with every value of a world's state, at one moment or many: written by runs, read to be compared.
+// Files with every value of a state, at one moment or many: written of runs and of records, read to be compared.
 #pragma once
 #include <cstdint>
 #include <fstream>
@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/sim/world.hpp"
+#include "core/space/state_values.hpp"
 #include "hal/output_file.hpp"
 #include "hal/result.hpp"
 
@@ -19,13 +19,13 @@ class StateDump {
   static hal::Result<StateDump> open(const std::string& path, std::int64_t every);
 
   /// To be called after each tick. Error: the disk is full; nothing is written any more.
-  hal::Status tick_done(const core::World& world);
+  hal::Status tick_done(const core::StateView& state);
   /// Writes the last moment, where that is not there yet, and puts the file in its place. Error: also one of before.
-  hal::Status close(const core::World& world);
+  hal::Status close(const core::StateView& state);
 
  private:
   StateDump(hal::OutputFile file, std::int64_t every) : file_(std::move(file)), every_(every) {}
-  hal::Status write(const core::World& world);
+  hal::Status write(const core::StateView& state);
 
   hal::OutputFile file_;
   std::int64_t every_;

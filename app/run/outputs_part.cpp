@@ -43,7 +43,7 @@ class Recording {
     if (records) tell(recorded_);
     record();
     outputs_.observers.tick_done(now_.world);
-    if (outputs_.dump) tell(outputs_.dump->tick_done(now_.world));
+    if (outputs_.dump) tell(outputs_.dump->tick_done(now_.world.state_view()));
   }
 
   /// Of somebody who holds the run.
@@ -116,7 +116,7 @@ bool write_results(RunOutputs& outputs, const RunResult& result, bool table) {
   if (outputs.trajectory != nullptr) check(outputs.trajectory->close());
   if (outputs.record != nullptr) check(outputs.record->close(result.world.tick() - 1, record_end(result)));
   if (!outputs.observers.finish(result.world)) good = false;
-  if (outputs.dump) check(outputs.dump->close(result.world));
+  if (outputs.dump) check(outputs.dump->close(result.world.state_view()));
   if (outputs.report) {
     const hal::Status written = outputs.report->write(report_of(result) + "\n");
     check(written.ok() ? outputs.report->commit() : written);

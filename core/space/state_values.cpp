@@ -39,7 +39,7 @@ class Rows {
       FieldRows rows{set, type.name, field.name, field.scalar, field.count};
       rows.first = first + field.offset;
       rows.stride = type.size;
-      rows.initial = static_cast<const std::byte*>(type.initial) + field.offset;
+      if (type.initial != nullptr) rows.initial = static_cast<const std::byte*>(type.initial) + field.offset;
       if (const hal::UsedBy by = hal::used_by(type, field); by.field != nullptr) {
         for (std::size_t i = 0; i < numbers_.size(); ++i)
           used[i] = static_cast<std::uint32_t>(hal::used_count(by, first + i * type.size, field));

@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdlib>
 #include <gtest/gtest.h>
+#include <set>
 #include <sstream>
 
 #include "core/record/record_reader.hpp"
@@ -58,6 +59,26 @@ TEST(Records, HoldPosesOfEveryTickAndBecomeTables) {
                          "--from", "10", "--until", "20", "--every", "5"});
   EXPECT_EQ(lines_of(some), 1U + 3U * 12U) << some;  // ep1, ep2, ep20 to ep29
   EXPECT_NE(some.find("distance_m[7]"), std::string::npos);
+}
+
+TEST(Records, AreDumpedWhereTheyHoldTheState) {
+  Folder folder;
+  output_of(folder, {"run", kConfigs + "epuck_diffusion.xml", "--seconds", "2", "--record", "run.record", "--dump",
+                     "run.csv", "--dump-every", "10", "--set", "record.ports=proximity"});
+  output_of(folder, {"export", "run.record", "--dump", "record.csv", "--from", "9", "--every", "10"});
+  const auto readings = [&](const char* file) {
+    std::istringstream text(text_of(folder.path() / file));
+    std::multiset<std::string> lines;
+    for (std::string line; std::getline(text, line);) {
+      if (line.find(",sensor proximity,distance[") != std::string::npos) lines.insert(line);
+    }
+    return lines;
+  };
+  EXPECT_GT(readings("run.csv").size(), 50U);
+  EXPECT_EQ(readings("run.csv"), readings("record.csv"));
+  EXPECT_NE(text_of(folder.path() / "record.csv").find("\n20,robot ep7,body,x,"), std::string::npos);
+  EXPECT_NE(output_of(folder, {"export", "run.record", "--dump", "none.csv", "--from", "99"}, 1).find("no such ticks"),
+            std::string::npos);
 }
 
 /// A row's time is that of its state: what falls lies where the closed form has it at that time, and at no other.
