@@ -43,13 +43,7 @@ void describe_outputs(hal::CommandLine& line, RunOptions& o) {
 
 /// Who may look where, and how the run is held for those who do.
 void describe_window(hal::CommandLine& line, RunOptions& o) {
-  line.option("--view-address", o.view.address,
-              "Where the window listens; 0.0.0.0: on all networks of this machine, for all who know its token")
-      .show_default();
-  line.option("--view-origin", o.view.origins,
-              "An address besides its own by which browsers reach the window, http://host:port, as through a proxy; "
-              "repeatable")
-      .repeatable();
+  describe_viewers(line, o.view);
   line.flag("--projector", o.view.projector, "Tell the address of the page for a projector over the arena, too");
   line.flag("--paused,--hold", o.hold.paused,
             "Wait at the start until somebody lets the run go; real robots are connected, and stand");
@@ -85,8 +79,18 @@ void describe_film(hal::CommandLine& line, std::string_view option, PictureReque
       .needs(option);
 }
 
-void describe_watch(hal::CommandLine& line, WatchRequest& o) {
-  line.flag("--watch", o.watch, "A live table of the run on the terminal; keys pause it and more");
+void describe_viewers(hal::CommandLine& line, ViewRequest& o) {
+  line.option("--view-address", o.address,
+              "Where the window listens; 0.0.0.0: on all networks of this machine, for all who know its token")
+      .show_default();
+  line.option("--view-origin", o.origins,
+              "An address besides its own by which browsers reach the window, http://host:port, as through a proxy; "
+              "repeatable")
+      .repeatable();
+}
+
+void describe_watch(hal::CommandLine& line, WatchRequest& o, std::string_view text) {
+  line.flag("--watch", o.watch, text);
   line.option("--watch-robots", o.robots, "Only these, separated by commas; '*' stands for any text")
       .separated()
       .needs("--watch");
@@ -114,7 +118,7 @@ void describe_run(hal::CommandLine& line, RunOptions& o) {
       .show_default();
   line.option("--without", o.without, "Simulate this robot instead of driving the real one; repeatable").repeatable();
   line.flag("--quiet", o.quiet, "No table at the end");
-  describe_watch(line, o.watch);
+  describe_watch(line, o.watch, "A live table of the run on the terminal; keys pause it and more");
   describe_hub_faults(line, o.hub_faults, "With real robots: a");
   describe_plugins(line, o.plugins);
   describe_window(line, o);

@@ -22,8 +22,11 @@ void describe_hub_faults(hal::CommandLine& line, std::vector<std::string>& fault
 /// The option `--desk-keys`.
 void describe_desk_keys(hal::CommandLine& line, std::string& keys);
 
-/// The table on the terminal.
-void describe_watch(hal::CommandLine& line, WatchRequest& request);
+/// The table on the terminal; the option that asks for it has this text.
+void describe_watch(hal::CommandLine& line, WatchRequest& request, std::string_view text);
+
+/// Who may look into a window, and where.
+void describe_viewers(hal::CommandLine& line, ViewRequest& request);
 
 /// How pictures and films look.
 void describe_looks(hal::CommandLine& line, PictureRequest& request);

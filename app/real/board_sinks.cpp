@@ -5,10 +5,9 @@ namespace tandem::app {
 
 void describe_robot_sinks(hal::CommandLine& /*line*/, RobotOptions& /*options*/) {}
 
-std::unique_ptr<core::RunPart> robot_sinks(const RobotOptions& /*options*/, const ShownRobot& /*shown*/,
-                                           const mixed_reality::LoneRobot& /*lone*/,
-                                           std::function<hal::Json()> /*end*/) {
-  return nullptr;
+hal::Result<RobotSinks> robot_sinks(const RobotOptions& /*options*/, const ShownRobot& /*shown*/,
+                                    const mixed_reality::LoneRobot& /*lone*/, std::function<hal::Json()> /*end*/) {
+  return RobotSinks{};
 }
 
 }  // namespace tandem::app

@@ -224,7 +224,7 @@ hal::Status Desks::replace(const Json& command, const std::string& robot) {
 }
 
 Json Desks::real_message() const {
-  Json message = app::real_message(session_);
+  Json message = app::real_message(session_.status(), session_.roll_call());
   Json spares = Json::array();
   std::set<std::string> in_use;
   for (const Json& robot : message["robots"]) in_use.insert({robot.value("device", ""), robot.value("coming", "")});

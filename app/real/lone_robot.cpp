@@ -43,6 +43,8 @@ namespace {
 constexpr hal::TimeNs kOpenWithin_ns = hal::kNsPerSecond;
 constexpr hal::TimeNs kFrozenAfter_ns = 500 * hal::kNsPerMs;  // guardians have stopped the robot meanwhile
 constexpr hal::TimeNs kPollEvery_ns = 20 * hal::kNsPerMs;     // while waiting for the robot
+constexpr hal::TimeNs kArmAfter_ns = hal::kNsPerSecond;       // an emergency stop
+constexpr hal::TimeNs kLookEvery_ns = 10 * hal::kNsPerMs;     // for an emergency stop
 
 /// The one robot of the file that is to be driven; prints what is wrong otherwise.
 const core::RobotItem* only_robot(const core::Scenario& scenario, const std::string& link) {
@@ -186,6 +188,8 @@ class LoneHub final : public core::Stepped {
   hal::Json report_so_far() const;
   void prepare_report();
   void commit();
+  hal::Status obey(std::string_view command);
+  void obey_emergency_stop() noexcept;
   void stop();
   int end();
 
@@ -205,7 +209,9 @@ class LoneHub final : public core::Stepped {
   mixed_reality::MonotonicTime clock_;
   std::optional<mixed_reality::LoneRobot> lone_;  // outlives the controller
   std::unique_ptr<BridgedController> controller_;
-  std::unique_ptr<core::RunPart> sinks_;  // until the run has them
+  RobotSinks sinks_;                                         // until the run has them
+  std::atomic<bool> estop_asked_{false}, arm_asked_{false};  // by people, on any thread
+  std::atomic<hal::TimeNs> stopped_ns_{-kArmAfter_ns};       // when the last emergency stop was asked for
   std::optional<mixed_reality::Pacer> pacer_;
   std::optional<EmergencyReport> emergency_;
   hal::Tick ticks_ = 0;
@@ -298,13 +304,21 @@ int LoneHub::prepare() {
                 mixed_reality::RealRobotParams{.rearm = mixed_reality::rearm_params(*item_.bridge),
                                                .frozen_after_ns = tick_ns + kFrozenAfter_ns},
                 tick_ns, log_);
-  const ShownRobot shown{
-      *scenario_, loader_, item_, lone_->real().bridge(), *file_.type, controller_->memory(), std::move(published)};
-  sinks_ = robot_sinks(options_, shown, *lone_, [this] {
+  const ShownRobot shown{*scenario_,
+                         loader_,
+                         item_,
+                         lone_->real().bridge(),
+                         *file_.type,
+                         controller_->memory(),
+                         std::move(published),
+                         [this](std::string_view command) { return obey(command); }};
+  auto sinks = robot_sinks(options_, shown, *lone_, [this] {
     hal::Json json = report_so_far();
     json["ended"] = RobotEnd{.failure = failure_, .interrupted = interrupted_}.word();
     return json;
   });
+  if (!sinks.ok()) return complain(kBadInput, sinks.error().message);
+  sinks_ = std::move(sinks).value();
   return kDone;
 }
 
@@ -325,8 +339,35 @@ hal::Json LoneHub::report_so_far() const {
   return json;
 }
 
+/// On any thread.
+hal::Status LoneHub::obey(std::string_view command) {
+  if (command == "estop") {
+    arm_asked_ = false;  // it came before
+    stopped_ns_ = clock_.now_ns();
+    estop_asked_ = true;
+    return {};
+  }
+  if (command == "rearm") {
+    rearm_asked() = true;
+    return {};
+  }
+  if (command != "arm")
+    return hal::Error{"'" + std::string(command) +
+                      "' cannot be done: one real robot drives by itself, and its time has one speed"};
+  if (clock_.now_ns() - stopped_ns_ < kArmAfter_ns)
+    return hal::Error{"an emergency stop came less than a second ago; arm it once more if it is to drive"};
+  arm_asked_ = true;
+  return {};
+}
+
+void LoneHub::obey_emergency_stop() noexcept {
+  if (estop_asked_.exchange(false)) lone_->real().emergency_stop(clock_.now_ns());
+}
+
 bool LoneHub::step() {
   mixed_reality::RealRobot& real = lone_->real();
+  obey_emergency_stop();
+  if (arm_asked_.exchange(false)) real.arm();
   if (rearm_asked().exchange(false)) real.rearm();
   real.set_guarded(guarded_->guarded());
   if (const std::uint64_t count = guarded_->freezes(); count != freezes_) {
@@ -370,9 +411,9 @@ int LoneHub::drive() {
     core::Run run(*this, *stop_);
     run.add(std::make_unique<core::Length>(steps));
     run.add(std::make_unique<Driven>(*this));
-    run.add(std::move(sinks_));
+    for (std::unique_ptr<core::RunPart>& part : sinks_) run.add(std::move(part));
     if (!options_.watch.watch) run.add(progress_part(steps, scenario_->ticks_per_second));
-    run.add(pace_part(*pacer_, &watchdog_->lock()));
+    run.add(pace_part(*pacer_, &watchdog_->lock(), {kLookEvery_ns, [this] { obey_emergency_stop(); }}));
     (void)run.go();
     if (failure_.empty()) failure_ = run.failure();
   }
@@ -420,8 +461,9 @@ int drive_robot(const RobotOptions& options) {
 
 int robot(const RobotOptions& options) {
   if (!options.link.starts_with(kPeerScheme)) return drive_robot(options);
-  if (!options.record.empty() || options.watch.watch)
-    return complain(kWrongUsage, "--record and --watch are for the run of the simulation that this is a peer of");
+  if (!options.record.empty() || options.watch.watch || options.page_port)
+    return complain(kWrongUsage,
+                    "--record, --watch and --view are for the run of the simulation that this is a peer of");
   return robot_peer(options);
 }
 

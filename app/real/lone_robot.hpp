@@ -18,6 +18,8 @@ struct RobotOptions {
   std::string report;
   std::string record;  ///< empty: none
   WatchRequest watch;
+  std::optional<std::int64_t> page_port;  ///< of a window; nothing: none
+  ViewRequest view;
   std::vector<std::string> hub_faults;  ///< as `parse_hub_fault` reads them
   double step_timeout_s = 5.0;          ///< as for `run`
   std::string robot;                    ///< of a hub, whose peer this is; empty: the file's; "*": any that waits

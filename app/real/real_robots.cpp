@@ -72,16 +72,16 @@ RealRobots::Line line_of(const mixed_reality::RealRobotStatus& real) {
 
 }  // namespace
 
-Json real_message(const mixed_reality::MixedSession& session) {
+Json real_message(const std::vector<mixed_reality::RealRobotStatus>& robots, const std::vector<core::RollRow>& roll) {
   Json message = {{"type", "real"}, {"robots", Json::array()}};
   bool stopped = false;
-  for (const mixed_reality::RealRobotStatus& robot : session.status()) {
+  for (const mixed_reality::RealRobotStatus& robot : robots) {
     stopped = stopped || robot.emergency_stopped;
     message["robots"].push_back(status_json(robot));
   }
   message["estop"] = stopped;
   message["roll"] = Json::array();
-  for (const core::RollGroup& group : core::grouped(session.roll_call())) {
+  for (const core::RollGroup& group : core::grouped(roll)) {
     message["roll"].push_back({{"presence", name_of(group.presence)},
                                {"urgent", is_urgent(group.presence)},
                                {"why", group.why},

@@ -13,7 +13,8 @@ namespace tandem::app {
 
 /// Message "real" of the view protocol: every real robot's link, ages, places and why it does not drive. Called by the
 /// thread that steps.
-hal::Json real_message(const mixed_reality::MixedSession& session);
+hal::Json real_message(const std::vector<mixed_reality::RealRobotStatus>& robots,
+                       const std::vector<core::RollRow>& roll);
 
 /// Lines of the table on a terminal.
 std::vector<RealRobots::Line> lines_of(const std::vector<mixed_reality::RealRobotStatus>& robots);

@@ -1,5 +1,6 @@
 // Additions of modules besides `real` to a run of the command line: pictures, held runs, the window.
 #pragma once
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +14,8 @@ namespace tandem::app {
 
 struct RunOptions;
 struct RunPlan;
+struct ViewRequest;
+struct ViewedSpace;
 
 /// An entry of the catalog, by its module's name. Each function may be null. Codes are those of the program; what was
 /// wrong was told.
@@ -28,6 +31,8 @@ struct RunModule {
   int (*prepare)(RunPlan& plan) = nullptr;
   /// Adds its parts; real robots take part by then.
   int (*add)(RunPlan& plan, core::Run& run) = nullptr;
+  /// Opens a window on a space that no world steps. Error: it cannot be opened.
+  hal::Result<std::unique_ptr<core::RunPart>> (*view)(const ViewRequest& request, const ViewedSpace& shown) = nullptr;
 };
 
 }  // namespace tandem::app

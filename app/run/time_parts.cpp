@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <optional>
+#include <utility>
 
 #include "app/process/progress.hpp"
 
@@ -10,7 +11,8 @@ namespace {
 
 class Pace final : public core::RunPart {
  public:
-  Pace(mixed_reality::Pacer& pacer, std::mutex* lock) : pacer_(pacer), lock_(lock) {}
+  Pace(mixed_reality::Pacer& pacer, std::mutex* lock, mixed_reality::Pacer::Lookout lookout)
+      : pacer_(pacer), lock_(lock), lookout_(std::move(lookout)) {}
   std::string_view name() const override { return "real time"; }
   core::RunTurn turn() const override { return core::RunTurn::Pace; }
   bool before_tick(core::Run&) override {
@@ -21,13 +23,14 @@ class Pace final : public core::RunPart {
   bool after_tick(core::Run& run) override {
     std::unique_lock<std::mutex> hold;
     if (lock_ != nullptr) hold = std::unique_lock(*lock_);
-    (void)pacer_.wait_for_next(run.stop());
+    (void)pacer_.wait_for_next(run.stop(), lookout_);
     return true;
   }
 
  private:
   mixed_reality::Pacer& pacer_;
   std::mutex* lock_;
+  mixed_reality::Pacer::Lookout lookout_;
   bool begun_ = false;
 };
 
@@ -52,8 +55,9 @@ class TerminalProgress final : public core::RunPart {
 
 }  // namespace
 
-std::unique_ptr<core::RunPart> pace_part(mixed_reality::Pacer& pacer, std::mutex* lock) {
-  return std::make_unique<Pace>(pacer, lock);
+std::unique_ptr<core::RunPart> pace_part(mixed_reality::Pacer& pacer, std::mutex* lock,
+                                         mixed_reality::Pacer::Lookout lookout) {
+  return std::make_unique<Pace>(pacer, lock, std::move(lookout));
 }
 
 std::unique_ptr<core::RunPart> progress_part(std::int64_t steps, std::int64_t ticks_per_second) {

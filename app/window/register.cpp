@@ -7,7 +7,7 @@
 namespace tandem::app {
 namespace {
 
-constexpr RunModule kWindow = {"window", nullptr, nullptr, nullptr, &add_view};
+constexpr RunModule kWindow = {"window", nullptr, nullptr, nullptr, &add_view, &view_space};
 
 }  // namespace
 

@@ -379,6 +379,40 @@ TEST(View, RealRobotsAreShownStoppedAndArmed) {
   EXPECT_NE(log.find("'window' (operator, 127.0.0.1): arm ep0"), std::string::npos) << log;
 }
 
+TEST(View, OneRealRobotByItselfIsShownStoppedAndArmed) {
+  const Folder folder;
+  const scenarios::EmulatedEpuck epuck(folder);
+  ASSERT_TRUE(epuck.ready());
+  Tandem robot({"robot", config("epuck_robot.xml"), "--seconds", "120", "--view"}, folder.path());
+  Watching viewer(address_of(robot));
+  const Json hello = viewer.until([](const Json& json) { return json["type"] == "hello"; });
+  EXPECT_EQ(hello["mode"], "mixed");
+  const auto real = [&](const auto& holds) {
+    const Json message = viewer.until([&](const Json& json) { return json["type"] == "real" && holds(json); });
+    return message.value("type", "") == "real";
+  };
+  EXPECT_TRUE(real([](const Json& json) { return json["robots"][0]["driving"] == true; }));
+  EXPECT_EQ(viewer.ask(R"({"do":"inspect","robots":["ep0"]})")["ok"], true);
+  const Json inside = viewer.until([](const Json& json) { return json["type"] == "inspection"; });
+  ASSERT_EQ(inside["robots"].size(), 1U);
+  EXPECT_FALSE(inside["robots"][0]["ports"].empty());
+  EXPECT_TRUE(eventually([&] { return epuck.moves(); }, kPatience_s));
+  Watching looking_on(viewers_address_of(robot));
+  EXPECT_EQ(looking_on.ask(R"({"do":"arm","robot":"ep0"})")["ok"], false);
+  EXPECT_EQ(looking_on.ask(R"({"do":"estop"})")["ok"], true);
+  EXPECT_NE(viewer.ask(R"({"do":"arm","robot":"ep0"})")["error"].get<std::string>().find("less than a second ago"),
+            std::string::npos);
+  EXPECT_TRUE(eventually([&] { return !epuck.moves(); }, kPatience_s));
+  EXPECT_TRUE(real([](const Json& json) { return json["estop"] == true && json["robots"][0]["driving"] == false; }));
+  EXPECT_NE(viewer.ask(R"({"do":"pause"})")["error"].get<std::string>().find("its time has one speed"),
+            std::string::npos);
+  EXPECT_TRUE(eventually([&] { return viewer.ask(R"({"do":"arm","robot":"ep0"})")["ok"] == true; }, kPatience_s));
+  EXPECT_TRUE(real([](const Json& json) { return json["robots"][0]["driving"] == true; }));
+  robot.signal(SIGINT);
+  EXPECT_EQ(robot.wait(kPatience_s), 130) << robot.errors();
+  EXPECT_FALSE(epuck.moves());
+}
+
 TEST(View, WhereAProjectorShowsTheArenaIsKeptWithTheUserNotBesideTheExperiment) {
   const Folder folder, state;
   const scenarios::fs::path experiment = folder.path() / "e.xml";

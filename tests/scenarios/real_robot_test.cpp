@@ -127,6 +127,9 @@ TEST(Robot, IsRecordedAndWatchedLikeARun) {
   ASSERT_EQ(table.wait(), 0) << table.errors();
   EXPECT_THAT(text_of(folder.path() / "poses.csv"), testing::Not(testing::HasSubstr("ep0,0.000000,0.000000,")))
       << "its wheels say where it went";
+  Tandem dump({"export", "r.record", "--dump", "d.csv", "--from", "29"}, folder.path());
+  ASSERT_EQ(dump.wait(), 0) << dump.errors();
+  EXPECT_THAT(text_of(folder.path() / "d.csv"), testing::ContainsRegex("30,robot ep0,sensor proximity,distance"));
   Tandem picture({"picture", "r.record", "-o", "p.svg"}, folder.path());
   EXPECT_EQ(picture.wait(), 0) << picture.errors();
 }
