@@ -108,11 +108,6 @@ void Network::stalled(hal::TimeNs duration) noexcept {
   asking_until_ns_ += duration;
 }
 
-bool Network::send_event(std::uint16_t number, std::span<const std::int16_t> arguments) noexcept {
-  payload_.clear();
-  return number < kFirstBootloader && payload_.append(arguments) && link_.send(number, payload_.bytes());
-}
-
 bool Network::send(const Message& message) noexcept {
   return encode(message, payload_) && link_.send(type_of(message), payload_.bytes());
 }

@@ -87,9 +87,7 @@ class Network {
   bool write(std::uint8_t id, std::size_t address, std::span<const std::int16_t> values) noexcept;
   /// Forgets every write that has not left yet, here and in the link's queue. What is written afterwards goes first.
   void forget_writes() noexcept;
-  /// Sends a user event to all. False: not taken.
-  bool send_event(std::uint16_t number, std::span<const std::int16_t> arguments) noexcept;
-  /// Sends any other message. False: not taken, or not a message.
+  /// Sends any message; a user event goes to all. False: not taken, or not a message.
   bool send(const Message& message) noexcept;
   /// The oldest event that waits. False when there is none.
   bool take_event(Event& event) noexcept;

@@ -197,7 +197,7 @@ void EyebotDriver::use_status() {
   const bool begins = status_.failsafe != before.failsafe && status_.failsafe != hal::FlightFailsafe::None;
   // Commands that we ourselves left out are no surprise.
   const bool late = status_.failsafe == hal::FlightFailsafe::CommandTimeout && setpoint_ == Told::Heartbeat;
-  const bool told = ordered_ == Action::Land || ordered_ == Action::Stop || ordered_ == Action::Disarm;
+  const bool told = ordered_ == Action::Land || ordered_ == Action::Disarm;
   const bool sinks = in_the_air(before.mode) && controlled_ && !told &&
                      (status_.mode == Mode::Land || status_.mode == Mode::Idle || status_.mode == Mode::Off ||
                       status_.mode == Mode::Stopped);
@@ -392,7 +392,6 @@ void EyebotDriver::guide(TimeNs now) noexcept {
   if (step.action == Action::Arm && status_.failsafe == hal::FlightFailsafe::LinkLost && refused_arming) {
     step.action = Action::ClearFailsafe;
   }
-  if (cut_) step = {status_.mode == Mode::Stopped ? Action::Nop : Action::Stop, false, false};
   const bool takes_speed =
       step.action == Action::TakeOff || step.action == Action::Land || step.action == Action::Attach;
   const TimeNs asked_ns = std::max(exchanged_ns_, orders_.last(Action::Nop).at_ns);
@@ -429,11 +428,6 @@ void EyebotDriver::land(TimeNs now) noexcept {
   if (goal_ != Goal::Land && status_.known && status_.mode != Mode::Idle && status_.mode != Mode::Off)
     log_.info("eye-bot '" + settings_.robot.id + "' lands; nothing but its landing ends that");
   set_goal(Goal::Land, now);
-  pump(now);
-}
-
-void EyebotDriver::cut_motors(TimeNs now) noexcept {
-  cut_ = true;
   pump(now);
 }
 

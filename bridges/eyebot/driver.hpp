@@ -142,8 +142,6 @@ class EyebotDriver {
   void land(hal::TimeNs now) noexcept;
   /// Its battery is so low that it should not stay in the air.
   bool battery_low() const noexcept;
-  /// Motors off at once: it falls. For people who have no other way left.
-  void cut_motors(hal::TimeNs now) noexcept;
 
   RobotState state() const noexcept { return state_; }
   bool stopped() const noexcept { return goal_ != Goal::Obey; }
@@ -283,7 +281,6 @@ class EyebotDriver {
   Goal goal_ = Goal::Obey;
   hal::TimeNs goal_since_ns_ = 0;
   bool reached_ = false;  // the goal, while it is not to obey
-  bool cut_ = false;
   bool steers_ = false;  // flight is commanded
   hal::FlightOrder order_ = hal::FlightOrder::Fly;
   float order_m_s_ = 0.0F;

@@ -13,6 +13,7 @@
 #include "bridges/aseba/message.hpp"
 #include "bridges/aseba/network.hpp"
 #include "bridges/aseba/stream_messages.hpp"
+#include "tests/bridges/can/frames.hpp"
 #include "tests/bridges/can/memory_bus.hpp"
 
 namespace {

@@ -12,6 +12,7 @@
 #include "bridges/footbot_emulator/kinematic_body.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
+#include "tests/bridges/can/frames.hpp"
 #include "tests/checkout.hpp"
 
 namespace tandem::scenarios {

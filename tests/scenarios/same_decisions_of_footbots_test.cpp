@@ -13,6 +13,7 @@
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/wheels.hpp"
 #include "hal/robot/footbot.hpp"
+#include "tests/bridges/can/frames.hpp"
 #include "tests/bridges/can/memory_bus.hpp"
 #include "tests/checkout.hpp"
 #include "tests/core/scenes.hpp"

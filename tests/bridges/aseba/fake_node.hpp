@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bridges/can/can_link.hpp"
+#include "tests/bridges/can/frames.hpp"
 
 namespace tandem::bridges::aseba {
 

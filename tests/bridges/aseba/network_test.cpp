@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/bridges/aseba/robot_on_bus.hpp"
+#include "tests/bridges/can/frames.hpp"
 
 namespace tandem::bridges::aseba {
 namespace {
@@ -401,10 +402,11 @@ TEST(Network, KeepsTheNewestEvents) {
 TEST(Network, SendsEventsAndCommands) {
   RobotOnBus robot;
   const auto listener = robot.bus.attach();
-  const std::array<std::int16_t, 3> arguments = {1, 2, 3};
-  EXPECT_TRUE(robot.network.send_event(5, arguments));
+  constexpr std::array<std::uint8_t, 6> kArguments = {1, 0, 2, 0, 3, 0};
+  const aseba::Words arguments(kArguments);
+  EXPECT_TRUE(robot.network.send(aseba::UserEvent{5, arguments}));
   EXPECT_TRUE(robot.network.send(aseba::Run{1}));
-  EXPECT_FALSE(robot.network.send_event(0x8000, arguments));
+  EXPECT_FALSE(robot.network.send(aseba::UserEvent{0x8000, arguments}));
   CanFrame frame;
   ASSERT_TRUE(listener->receive(frame));
   EXPECT_TRUE(same_on_wire(frame, make_frame(0x300, std::array<std::uint8_t, 8>{5, 0, 1, 0, 2, 0, 3, 0})));

@@ -92,8 +92,8 @@ TEST_F(PlaygroundEpuck, DescribesItselfAndObeys) {
   ASSERT_TRUE(read(0, node.image.size()));  // all there is
   EXPECT_EQ(node.statistics.wrong_length, 0U);
 
-  const std::array<std::int16_t, 3> arguments = {1, -2, 3};
-  EXPECT_TRUE(network_->send_event(5, arguments));
+  constexpr std::array<std::uint8_t, 6> kArguments = {1, 0, 0xFE, 0xFF, 3, 0};
+  EXPECT_TRUE(network_->send(aseba::UserEvent{5, aseba::Words(kArguments)}));
   ASSERT_TRUE(read(2, 3));
   EXPECT_EQ(node.value(2), 1);
   EXPECT_EQ(node.value(3), -2);

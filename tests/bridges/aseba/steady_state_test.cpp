@@ -1,4 +1,5 @@
 // After the nodes are described, reading and writing them allocates nothing.
+#include <array>
 #include <atomic>
 #include <cstdlib>
 #include <gtest/gtest.h>
@@ -31,6 +32,8 @@ void operator delete(void* memory, std::size_t) noexcept {
 namespace tandem::bridges::aseba {
 namespace {
 
+constexpr std::array<std::uint8_t, 2> kEvent = {1, 0};
+
 TEST(Network, AllocatesNothingInSteadyState) {
   RobotOnBus robot;
   robot.add_motor(1);
@@ -47,7 +50,7 @@ TEST(Network, AllocatesNothingInSteadyState) {
       robot.network.want(id, 34, 3);
       robot.network.write(id, 34, speed);
     }
-    if (i % 5 == 0) robot.network.send_event(3, speed);
+    if (i % 5 == 0) robot.network.send(UserEvent{3, Words(kEvent)});
     robot.now += hal::kNsPerMs;
     robot.network.poll(robot.now);
     Event event;

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <linux/can/error.h>
 
+#include "tests/bridges/can/frames.hpp"
+
 namespace tandem::bridges {
 namespace {
 

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <thread>
 
+#include "tests/bridges/can/frames.hpp"
+
 namespace tandem::bridges {
 namespace {
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/bridges/can/frames.hpp"
 #include "tests/bridges/can/memory_bus.hpp"
 
 namespace tandem::bridges {

@@ -11,6 +11,7 @@
 
 #include "bridges/can/can_link_opener.hpp"
 #include "bridges/link/serial_link.hpp"
+#include "tests/bridges/can/frames.hpp"
 #include "tests/bridges/link/memory_link.hpp"
 
 namespace tandem::bridges {

@@ -4,6 +4,8 @@
 #include <rapidcheck.h>
 #include <vector>
 
+#include "tests/bridges/can/frames.hpp"
+
 namespace tandem::bridges {
 namespace {
 

@@ -12,6 +12,7 @@
 #include "bridges/can/slcan_link.hpp"
 #include "bridges/can/socketcan_link.hpp"
 #include "bridges/link/serial_link.hpp"
+#include "tests/bridges/can/frames.hpp"
 #include "tests/bridges/can/guest_process.hpp"
 
 namespace tandem::bridges {

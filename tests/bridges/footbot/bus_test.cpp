@@ -10,6 +10,7 @@
 #include "hal/device/turret.hpp"
 #include "hal/device/wheels.hpp"
 #include "tests/bridges/can/frame_bits.hpp"
+#include "tests/bridges/can/frames.hpp"
 #include "tests/bridges/footbot/fake_footbot.hpp"
 
 namespace tandem::bridges::footbot {

@@ -10,6 +10,7 @@
 #include <thread>
 #include <unistd.h>
 
+#include "tests/bridges/can/frames.hpp"
 #include "tests/bridges/footbot/fake_footbot.hpp"
 
 namespace tandem::bridges::footbot {

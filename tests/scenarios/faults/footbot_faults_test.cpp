@@ -9,6 +9,7 @@
 #include "bridges/footbot_emulator/faults.hpp"
 #include "bridges/footbot_emulator/footbot.hpp"
 #include "hal/device/wheels.hpp"
+#include "tests/bridges/can/frames.hpp"
 #include "tests/bridges/can/memory_bus.hpp"
 #include "tests/checkout.hpp"
 #include "tests/scenarios/faults/run_story.hpp"

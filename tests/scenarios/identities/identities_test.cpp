@@ -14,6 +14,7 @@
 #include "bridges/footbot_emulator/footbot.hpp"
 #include "bridges/thymio/driver.hpp"
 #include "hal/device/flight.hpp"
+#include "tests/bridges/can/frames.hpp"
 #include "tests/bridges/can/memory_bus.hpp"
 #include "tests/bridges/thymio/thymio_line.hpp"
 #include "tests/checkout.hpp"
