@@ -10,9 +10,10 @@
 #include "app/lab/recorded.hpp"
 #include "app/module/module_table.hpp"
 #include "app/outputs/report.hpp"
+#include "app/outputs/run_record.hpp"
 #include "app/process/signals.hpp"
 #include "app/process/terminal.hpp"
-#include "core/record/record.hpp"
+#include "core/run/run.hpp"
 #include "core/sim/world.hpp"
 #include "mixed_reality/gap/measures.hpp"
 
@@ -90,31 +91,24 @@ hal::Status simulate(Recorded& recorded, const GapOptions& options, const std::s
   const auto seed = recorded.run.start.find("seed");
   if (!options.seed && seed != recorded.run.start.end() && seed->is_number_unsigned())
     world_options.seed = seed->get<std::uint64_t>();
+  scenario.record = {};
+  scenario.record.look = scenario.record.state = false;
+  scenario.record.fingerprint_every = 0;
+  if (std::any_of(recorded.run.robots.begin(), recorded.run.robots.end(), [](const auto& r) { return r.rays > 0; }))
+    scenario.record.ports = {"proximity"};
   core::Problems problems;
   auto world = core::World::make(scenario, *recorded.loader, world_options, problems);
   print_problems(problems);
   if (world == nullptr) return hal::Error{"the simulation cannot be made"};
-  core::RecordConfig config;
-  config.path = path;
-  config.look = false;
-  config.state = false;
-  config.fingerprint_every = 0;
-  if (std::any_of(recorded.run.robots.begin(), recorded.run.robots.end(), [](const auto& r) { return r.rays > 0; }))
-    config.ports = {"proximity"};
-  auto opened = core::Recorder::open(config, world->space(), {{"ticks_per_second", scenario.ticks_per_second}});
-  if (!opened.ok()) return opened.error();
-  const std::atomic<bool>& stop = catch_signals();
-  world->start();
-  const auto last = recorded.run.first + static_cast<hal::Tick>(recorded.run.ticks);
-  while (world->tick() < last && world->state() == core::RunState::Running) {
-    if (stop.load(std::memory_order_relaxed)) return hal::Error{"interrupted"};
-    world->step();
-    if (const hal::Status done = opened.value()->tick_done(world->space(), world->tick() - 1); !done.ok()) return done;
-  }
-  if (world->state() == core::RunState::Failed) return hal::Error{world->failure()};
-  hal::Json end;
-  end["measures"] = world->measures().all();
-  return opened.value()->close(world->tick() - 1, end);
+  auto record = RecordPart::open(*world, *recorded.loader, path);
+  if (!record.ok()) return record.error();
+  core::Run run(*world, catch_signals());
+  run.add(std::make_unique<core::Length>(recorded.run.first + static_cast<hal::Tick>(recorded.run.ticks)));
+  run.add(std::move(record).value());
+  (void)run.go();
+  if (run.stopped()) return hal::Error{"interrupted"};
+  const std::string& failure = world->failure().empty() ? run.failure() : world->failure();
+  return failure.empty() ? hal::Status() : hal::Status(hal::Error{failure});
 }
 
 void print(const mixed_reality::Gap& gap) {

@@ -7,8 +7,9 @@
 #include <thread>
 
 #include "app/real/simulated_body.hpp"
+#include "app/run/time_parts.hpp"
+#include "core/run/run.hpp"
 #include "core/sim/world.hpp"
-#include "mixed_reality/time/pacer.hpp"
 
 namespace tandem::app {
 
@@ -29,16 +30,11 @@ class RealTimeWorld {
   void live(const std::atomic<bool>& stop) {
     mixed_reality::MonotonicTime clock;
     mixed_reality::Pacer pacer(clock, world_->ticks_per_second());
-    world_->start();
-    pacer.start();
-    while (world_->state() == core::RunState::Running) {
-      world_->step();
-      if (!pacer.wait_for_next(stop)) break;
-    }
-    world_->finish();
-    if (world_->state() == core::RunState::Failed) {
-      fmt::print(stderr, "error: the arena stands still: {}\n", world_->failure());
-    }
+    core::Run run(*world_, stop);
+    run.add(std::make_unique<core::Length>(0));
+    run.add(pace_part(pacer));
+    (void)run.go();
+    if (!world_->failure().empty()) fmt::print(stderr, "error: the arena stands still: {}\n", world_->failure());
   }
 
   std::unique_ptr<core::World> world_;
