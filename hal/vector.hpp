@@ -1,19 +1,12 @@
-// Vectors and rotations of fixed size, in double precision (Eigen).
-//
-// They are not aligned beyond a double, so that they can stand in controllers, in snapshots and behind a plug-in's
-// border whatever the compiler was told of the processor. Whoever links hal has EIGEN_DONT_VECTORIZE: vector
-// instructions would add products in another order than a processor without them. Functions with sines and the like are
-// made of hal/elementary.hpp. So results have the same bits everywhere.
+// Vectors and rotations of fixed size, in double precision (Eigen), as hal/vector2.hpp has those of the plane.
 #pragma once
-#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
 
-#include "hal/elementary.hpp"
+#include "hal/vector2.hpp"
 
 namespace tandem::hal {
 
-using Vector2 = Eigen::Matrix<double, 2, 1, Eigen::DontAlign>;
 using Vector3 = Eigen::Matrix<double, 3, 1, Eigen::DontAlign>;
 using Matrix3 = Eigen::Matrix<double, 3, 3, Eigen::DontAlign>;
 using Quaternion = Eigen::Quaternion<double, Eigen::DontAlign>;
@@ -30,28 +23,6 @@ inline Quaternion quaternion_of(const std::array<double, 4>& a) noexcept {
 }
 inline std::array<double, 4> array_of(const Quaternion& q) noexcept {
   return {q.w(), q.x(), q.y(), q.z()};
-}
-
-/// The vector of this length that points to the bearing (counter-clockwise from x).
-inline Vector2 polar(double length, double bearing_rad) noexcept {
-  return {length * cos(bearing_rad), length * sin(bearing_rad)};
-}
-
-/// Direction of a vector, in [-pi, pi], counter-clockwise from x; 0 for no length.
-inline double bearing_of(const Vector2& v) noexcept {
-  return atan2(v.y(), v.x());
-}
-
-/// Its length, without overflow on the way.
-inline double length_of(const Vector2& v) noexcept {
-  return hypot(v.x(), v.y());
-}
-
-/// `v`, turned counter-clockwise.
-inline Vector2 turned(const Vector2& v, double by_rad) noexcept {
-  const double c = cos(by_rad);
-  const double s = sin(by_rad);
-  return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
 }
 
 /// A turn about the vertical.

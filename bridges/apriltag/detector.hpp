@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "hal/result.hpp"
-#include "hal/vector.hpp"
+#include "hal/vector2.hpp"
 
 namespace tandem::bridges::apriltag {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "hal/result.hpp"
-#include "hal/vector.hpp"
+#include "hal/vector2.hpp"
 
 namespace tandem::bridges::calibration {
 

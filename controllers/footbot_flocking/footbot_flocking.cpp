@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "controllers/steering/colors.hpp"
-#include "hal/vector.hpp"
+#include "hal/vector2.hpp"
 
 namespace tandem::controllers {
 namespace {

@@ -7,7 +7,7 @@
 #include "controllers/steering/drive.hpp"
 #include "controllers/steering/nearby.hpp"
 #include "hal/elementary.hpp"
-#include "hal/vector.hpp"
+#include "hal/vector2.hpp"
 
 namespace tandem::controllers {
 namespace {

@@ -6,7 +6,7 @@
 #include "controllers/steering/drive.hpp"
 #include "hal/angle.hpp"
 #include "hal/device/ring_sensors.hpp"
-#include "hal/vector.hpp"
+#include "hal/vector2.hpp"
 
 namespace tandem::controllers {
 namespace {

@@ -1,7 +1,7 @@
 // Maximum likelihood of a filter's innovations, by Fisher scoring [Ljung 1999, System Identification, section 7.4].
 #pragma once
-#include <Eigen/Core>
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "mixed_reality/gap/proximity_fit.hpp"
 
-#include <Eigen/Core>
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,6 +1,7 @@
 // Stops robots whose links are swapped, as far as trackers see them.
 #include "hal/unit.hpp"
 #include "mixed_reality/session/mixed_session.hpp"
+#include "mixed_reality/tracking/fused_pose.hpp"
 
 namespace tandem::mixed_reality {
 

@@ -7,6 +7,7 @@
 #include "hal/unit.hpp"
 #include "mixed_reality/settings/timeouts.hpp"
 #include "mixed_reality/settings/tracker_check.hpp"
+#include "mixed_reality/tracking/fused_pose.hpp"
 #include "mixed_reality/tracking/odometry.hpp"
 #include "mixed_reality/tracking/positioned.hpp"
 

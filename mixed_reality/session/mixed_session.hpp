@@ -33,6 +33,7 @@ namespace tandem::mixed_reality {
 /// that kind of robot.
 using BridgeMaker = std::function<bridges::MadeBridge(const bridges::BridgeRequest&)>;
 
+class FusedPose;
 class MixedSession;
 
 struct MixedOptions {

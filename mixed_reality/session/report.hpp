@@ -8,6 +8,7 @@
 #include "mixed_reality/session/robot_ledger.hpp"
 #include "mixed_reality/time/pacer.hpp"
 #include "mixed_reality/time/system_clock.hpp"
+#include "mixed_reality/tracking/learnt_motion.hpp"
 #include "mixed_reality/tracking/trackers.hpp"
 #include "mixed_reality/twin/twin.hpp"
 
@@ -28,7 +29,7 @@ struct RealRobotReport {
   std::uint64_t poses_rejected = 0;     ///< measurements that the pose source did not believe
   std::string pose_source;              ///< "fused"
   std::optional<PoseCounts> sightings;  ///< by trackers; nothing: none is asked
-  std::optional<PoseFilter::Learnt> learnt;
+  std::optional<LearntMotion> learnt;
   std::vector<std::string> incidents;  ///< "robot 'ep0' at 12.3 s: link lost (…)", the first few
 };
 

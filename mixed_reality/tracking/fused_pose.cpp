@@ -71,7 +71,10 @@ TrackedPose FusedPose::latch(const Moment& now) noexcept {
   const hal::TimeNs at_ns = std::min(filter_.time_ns() + lag_ns, now.monotonic_ns);
   const PoseEstimate estimate = honest ? filter_.seen_by(*honest, at_ns) : filter_.now();
   TrackedPose tracked{estimate.pose, honest ? at_ns : filter_.time_ns(), true};
-  tracked.covariance = estimate.covariance;
+  std::size_t n = 0;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j <= i; ++j) tracked.covariance[n++] = estimate.covariance(i, j);
+  }
   tracked.sd_m = std::sqrt(std::max(estimate.covariance(0, 0), estimate.covariance(1, 1)));
   tracked.sd_rad = std::sqrt(estimate.covariance(2, 2));
   tracked.vague = !(*tracked.sd_m <= params_.lost_m);

@@ -13,6 +13,7 @@
 #include "core/space/pose.hpp"
 #include "hal/params.hpp"
 #include "hal/time.hpp"
+#include "mixed_reality/tracking/learnt_motion.hpp"
 #include "mixed_reality/tracking/pose_measurement.hpp"
 
 namespace tandem::mixed_reality {
@@ -55,7 +56,7 @@ struct PoseEstimate {
 class PoseFilter {
  public:
   static constexpr std::size_t kKept = 256;
-  static constexpr std::size_t kTrackers = 4;
+  static constexpr std::size_t kTrackers = LearntMotion::kTrackers;
   static constexpr int kInsists = 5;
   static constexpr double kInsists_s = 0.2;  ///< over which gated poses must agree at least
   static constexpr double kOthers_s = 1.0;   ///< for so long after one tracker was believed another is not in its stead
@@ -94,16 +95,7 @@ class PoseFilter {
   /// Of the factors of the left wheel, the right one, and their distance.
   Eigen::Matrix3d wheels_covariance() const noexcept { return event(count_ - 1).after.p.block<3, 3>(3, 3); }
 
-  /// What was learnt: factors of the wheels' ways and of their distance, rad/s, s; and how well they are known.
-  struct Learnt {
-    double left = 1.0, right = 1.0, base = 1.0, bias_rad_s = 0.0;
-    std::array<double, kTrackers> delay_s{};
-    std::array<double, 4 + kTrackers> sd{};
-    /// By which the body is later than the stamps of its encoders, and how well that is known (FusedPose); nothing: no
-    /// tracker whose stamps are right has told it. It is then not in `delay_s` of these.
-    std::optional<double> lag_s = {};
-    double lag_sd_s = 0.0;
-  };
+  using Learnt = LearntMotion;
   Learnt learnt() const noexcept;
 
   std::uint64_t used() const noexcept { return used_; }

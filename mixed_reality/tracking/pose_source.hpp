@@ -1,6 +1,5 @@
 // Interface of a tracker: the pose of a real robot.
 #pragma once
-#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -21,10 +20,10 @@ struct TrackedPose {
   core::Pose pose;
   hal::TimeNs taken_ns = 0;  ///< CLOCK_MONOTONIC
   bool known = false;        ///< false: there never was one; `pose` is where the robot was said to start
-  std::optional<double> sd_m = {}, sd_rad = {};          ///< of each coordinate, of the heading; nothing: not known
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of x, y, heading, where sd_m is known
-  bool vague = false;                                    ///< known no better than nothing to act on
-  std::optional<std::array<double, 4>> q_WB = {};        ///< attitude: w, x, y, z; nothing: level, as far as is known
+  std::optional<double> sd_m = {}, sd_rad = {};  ///< of each coordinate, of the heading; nothing: not known
+  std::array<double, 6> covariance = {};  ///< xx, xy, yy, x heading, y heading, heading heading, where sd_m is known
+  bool vague = false;                     ///< known no better than nothing to act on
+  std::optional<std::array<double, 4>> q_WB = {};  ///< attitude: w, x, y, z; nothing: level, as far as is known
 };
 
 /// Why measurements of a pose were not used, and how many were.

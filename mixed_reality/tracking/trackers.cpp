@@ -6,6 +6,7 @@
 
 #include "hal/check.hpp"
 #include "mixed_reality/time/system_clock.hpp"
+#include "mixed_reality/tracking/fused_pose.hpp"
 
 namespace tandem::mixed_reality {
 namespace {

@@ -10,9 +10,11 @@
 #include "bridges/clock_estimator.hpp"
 #include "bridges/tracker.hpp"
 #include "core/scenario/scenario.hpp"
-#include "mixed_reality/tracking/fused_pose.hpp"
+#include "mixed_reality/time/moment.hpp"
 
 namespace tandem::mixed_reality {
+
+class FusedPose;
 
 /// Of one tracker, counted from the start.
 struct TrackerStatus {
@@ -43,7 +45,7 @@ class Trackers {
   /// `unix_clock`: nanoseconds since 1970; null: the system's.
   explicit Trackers(const Arena& arena, hal::TimeNs (*unix_clock)() noexcept = nullptr);
 
-  /// In this order: trackers, as many as PoseFilter knows at most; robots; `start`.
+  /// In this order: trackers, PoseFilter::kTrackers at most; robots; `start`.
   void add(const core::TrackerItem& item, std::unique_ptr<bridges::Tracker> tracker);
   /// Where what is seen of a robot is on it, and how it is turned against the robot's forward axis.
   struct Tag {

@@ -201,10 +201,8 @@ void Twin::note_track() noexcept {
   for (std::size_t i = 0; i < q.size(); ++i) track_.q_WB[i] = static_cast<float>(q[i]);
   track_.sd_m = tracked_.sd_m ? static_cast<float>(*tracked_.sd_m) : TrackRow::kUnknown;
   track_.sd_rad = tracked_.sd_rad ? static_cast<float>(*tracked_.sd_rad) : TrackRow::kUnknown;
-  std::size_t n = 0;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j <= i; ++j)
-      track_.covariance[n++] = tracked_.sd_m ? static_cast<float>(tracked_.covariance(i, j)) : TrackRow::kUnknown;
+  for (std::size_t i = 0; i < track_.covariance.size(); ++i)
+    track_.covariance[i] = tracked_.sd_m ? static_cast<float>(tracked_.covariance[i]) : TrackRow::kUnknown;
   track_.sent_ns = -1;
   poses_->note_learnt(track_);
   const DelayEstimate to_counters = motion_ != nullptr ? motion_->to_counters() : DelayEstimate{};

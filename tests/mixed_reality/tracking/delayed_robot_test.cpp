@@ -81,7 +81,10 @@ class Delayed {
     const Eigen::Vector3d e(tracked_.pose.x_m - (a.x + part * (b.x - a.x)),
                             tracked_.pose.y_m - (a.y + part * (b.y - a.y)),
                             apart(tracked_.pose.heading_rad(), a.heading + part * apart(b.heading, a.heading)));
-    return e.dot(tracked_.covariance.inverse() * e);
+    const std::array<double, 6>& c = tracked_.covariance;
+    Eigen::Matrix3d covariance;
+    covariance << c[0], c[1], c[3], c[1], c[2], c[4], c[3], c[4], c[5];
+    return e.dot(covariance.inverse() * e);
   }
   double wheels_nees() const {
     const PoseFilter::Learnt found = source_.learnt();

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "hal/robot/footbot.hpp"
+#include "mixed_reality/tracking/fused_pose.hpp"
 
 namespace tandem::mixed_reality {
 namespace {
