@@ -127,7 +127,7 @@ hal::Result<Json> LiveRun::Impl::go_to(const Json& c) {
   if (!tick.ok()) return tick.error();
   if (const hal::Status gone = timeline.go_to(tick.value()); !gone.ok()) return gone.error();
   paused = true;
-  steps_wanted = 0;
+  steps_wanted = tick.value() - world.tick();  // what is to be recorded again
   stopped_by.clear();
   moved();
   return here();

@@ -132,7 +132,7 @@ struct LiveRun::Impl {
   void leave() {
     if (!timeline.known()) return;
     leaving = true;
-    if (const hal::Status there = timeline.go_to(timeline.latest_tick()); !there.ok())
+    if (const hal::Status there = timeline.go_to(timeline.recorded_tick()); !there.ok())
       options.log.warning(there.error().message);
   }
   void moved() {

@@ -1,6 +1,7 @@
 #include "core/live/timeline.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "core/live/source_files.hpp"
@@ -41,7 +42,7 @@ Timeline::Timeline(World& world, LiveClock& clock, const LiveOptions& options)
     no_way_back_ = "real robots take part, which cannot be put back";
   else if (!wanted_)
     no_way_back_ = "no checkpoints are kept";
-  for (const RepeatedAction& action : options.repeat) touches_.push_back({action.step, 0, action.action});
+  for (const RepeatedAction& action : options.repeat) touches_.push_back({action.step, 0, action.action, {}});
 }
 
 void Timeline::start() {
@@ -50,7 +51,7 @@ void Timeline::start() {
 
 /// The way back ends here. `from_start`: a reset comes to the same state.
 void Timeline::begin_anew(bool from_start) {
-  first_step_ = latest_ = step_;
+  first_step_ = latest_ = recorded_ = step_;
   base_tick_ = world_.tick();
   first_touch_ = applied_;
   if (applied_ > 0) went_back_ = true;
@@ -152,7 +153,8 @@ bool Timeline::after_step(hal::TimeNs cost_ns) {
     (void)apply_due();  // they could be done before
     return false;
   }
-  latest_ = step_;
+  recorded_ = step_;
+  latest_ = std::max(latest_, step_);
   since_checkpoint_ns_ += cost_ns;
   if (wanted_ && since_checkpoint_ns_ >= kCheaper * checkpoint_cost_ns_) keep();
   return true;
@@ -198,10 +200,30 @@ hal::Result<Json> Timeline::perform(Json& action) {
   return Json{{"seed", wanted}};
 }
 
+/// Takes out what comes after this step; null: nothing does.
+std::unique_ptr<Timeline::Way> Timeline::way_ahead() {
+  if (latest_ == step_ && touches_.size() == applied_) return nullptr;
+  auto way = std::make_unique<Way>(Way{{}, latest_, recorded_, told_, went_back_, tellings_});
+  const auto next = touches_.begin() + static_cast<std::ptrdiff_t>(applied_);
+  way->touches.assign(std::make_move_iterator(next), std::make_move_iterator(touches_.end()));
+  return way;
+}
+
+/// Makes it the way ahead again. The record still has it, unless another one was told meanwhile.
+void Timeline::bring_back(Way& way) {
+  touches_.insert(touches_.end(), std::make_move_iterator(way.touches.begin()),
+                  std::make_move_iterator(way.touches.end()));
+  latest_ = way.latest;
+  if (tellings_ != way.tellings) return;
+  recorded_ = way.recorded;
+  told_ = way.told;
+  went_back_ = way.went_back;
+}
+
 /// From this step on the run takes another way, with so many of the touches.
 void Timeline::drop_after(std::size_t touches, std::int64_t step) {
-  if (latest_ > step || told_ > touches) went_back_ = true;
-  latest_ = step;
+  if (recorded_ > step || told_ > touches) went_back_ = true;
+  latest_ = recorded_ = step;
   touches_.resize(touches);
   told_ = std::min(told_, touches);
   while (!checkpoints_.empty() && checkpoints_.back().step > step) {
@@ -214,16 +236,17 @@ hal::Result<Json> Timeline::act(Json action) {
   const hal::Tick tick = world_.tick();
   hal::Result<Json> done = perform(action);
   if (!done.ok()) return done;
-  const std::size_t dropped = touches_.size() - applied_;
+  std::unique_ptr<Way> left = way_ahead();
   drop_after(applied_, step_);
-  if (dropped > 0) done.value()["dropped"] = dropped;
-  const bool goes_on = applied_ > std::max(told_, first_touch_) && touches_.back().step == step_ &&
+  if (left != nullptr && !left->touches.empty()) done.value()["dropped"] = left->touches.size();
+  if (left != nullptr && left->latest > step_) done.value()["dropped_ticks"] = left->latest - step_;
+  const bool goes_on = left == nullptr && applied_ > std::max(told_, first_touch_) && touches_.back().step == step_ &&
                        continues(touches_.back().action, action);
   const bool reset = is_reset(action);
   if (goes_on)
     touches_.back().action = std::move(action);
   else
-    touches_.push_back({step_, tick, std::move(action)});
+    touches_.push_back({step_, tick, std::move(action), std::move(left)});
   applied_ = touches_.size();
   if (reset) begin_anew(world_.all_anew());
   return done;
@@ -234,6 +257,7 @@ void Timeline::note(const Json& action) {
 }
 
 void Timeline::tell() {
+  ++tellings_;
   if (std::exchange(went_back_, false)) {
     // Whoever reads of it forgets all from this tick on: what was done at it is told again.
     told_ = first_touch_;
@@ -310,15 +334,16 @@ hal::Status Timeline::go_to(hal::Tick tick) {
                       std::to_string(first_tick()) + ", the first, and " + std::to_string(latest_tick()) +
                       ", the latest"};
   }
-  return way_to(step_of(tick), false);
+  return way_to(std::min(step_of(tick), recorded_), false);
 }
 
 hal::Result<Json> Timeline::undo() {
   if (!no_way_back_.empty()) return hal::Error{"nothing can be undone: there is no way back: " + no_way_back_};
   if (applied_ <= first_touch_)
     return hal::Error{"there is nothing to undo before tick " + std::to_string(world_.tick())};
-  const Touch last = touches_[applied_ - 1];
+  const Touch last = std::move(touches_[applied_ - 1]);
   drop_after(applied_ - 1, last.step);
+  if (last.left != nullptr) bring_back(*last.left);
   const hal::Status there = way_to(last.step, true);
   if (!there.ok()) return there.error();
   return Json{{"tick", world_.tick()}, {"undone", last.action}};

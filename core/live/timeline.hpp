@@ -5,7 +5,7 @@
 //
 //   go to 9:  restores the checkpoint at 5, touches with a, steps to 9. Going on from there is the same again: b and c
 //             come at their steps, and nothing of it is recorded twice. Whoever touches at 9 makes it another run: what
-//             was after 9 is dropped.
+//             was after 9 is dropped. Undoing that touch brings it back: b, c and all ticks up to 14.
 //
 // Where no checkpoint can be kept (a controller that cannot be copied, no memory for one), the first stands for the
 // start of the run: it is restarted and computed again from there, and the fingerprints of later ones say whether it
@@ -17,6 +17,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -44,8 +45,11 @@ class Timeline {
 
   hal::Tick first_tick() const noexcept { return checkpoints_.empty() ? world_.tick() : base_tick_; }
   hal::Tick latest_tick() const noexcept { return tick_of(latest_); }
-  /// Whether the next step was done before.
-  bool known() const noexcept { return step_ < latest_; }
+  /// Up to where the run is recorded. Below `latest_tick` after an undo that brought ticks back which the record had
+  /// dropped: these are recorded again when they are stepped.
+  hal::Tick recorded_tick() const noexcept { return tick_of(recorded_); }
+  /// Whether the next step was done before, and is recorded.
+  bool known() const noexcept { return step_ < recorded_; }
 
   /// Before World::step: does what is to be repeated now, and tells what is new. Error: it could not be done.
   hal::Status before_step();
@@ -53,13 +57,16 @@ class Timeline {
   bool after_step(hal::TimeNs cost_ns);
 
   /// Carries out an action of a person (core/live/touch.hpp, or {"do": "reset", "seed"}), now. @returns members for the
-  /// answer; "dropped": how many later touches do not count any more. Error: nothing was done, or the run has failed.
+  /// answer; "dropped" and "dropped_ticks": how many later touches and ticks do not count any more. Error: nothing was
+  /// done, or the run has failed.
   hal::Result<hal::Json> act(hal::Json action);
   /// Tells at once of an action that cannot be repeated.
   void note(const hal::Json& action);
-  /// Errors: no way back; not between the first tick and the latest.
+  /// To that tick, or to `recorded_tick` where that is earlier: the rest is to be stepped. Errors: no way back; not
+  /// between the first tick and the latest.
   hal::Status go_to(hal::Tick tick);
-  /// To just before the last touch, which is dropped with all that came after it. @returns that touch.
+  /// To just before the last touch, which is dropped with all that came after it; what the touch itself had dropped is
+  /// there again. @returns that touch.
   hal::Result<hal::Json> undo();
   /// Computes the ticks from `from` to `to` again, calls `look` at each, and comes back to where it was. Errors: as
   /// `go_to`.
@@ -84,10 +91,20 @@ class Timeline {
   std::size_t bytes() const noexcept { return bytes_; }
 
  private:
+  struct Way;
   struct Touch {
     std::int64_t step = 0;
     hal::Tick tick = 0;
     hal::Json action;
+    std::unique_ptr<Way> left = {};  // for this touch; null: nothing came after it
+  };
+  /// What came after a step, and what was told of it.
+  struct Way {
+    std::vector<Touch> touches;
+    std::int64_t latest = 0, recorded = 0;
+    std::size_t told = 0;
+    bool went_back = false;
+    std::uint64_t tellings = 0;
   };
   struct Checkpoint {
     std::int64_t step = 0;
@@ -101,7 +118,9 @@ class Timeline {
   void thin();
   void begin_anew(bool from_start);
   hal::Status go_back_to(const Checkpoint& from);
+  std::unique_ptr<Way> way_ahead();
   void drop_after(std::size_t touches, std::int64_t step);
+  void bring_back(Way& way);
   hal::Result<hal::Json> perform(hal::Json& action);
   hal::Status apply_due();
   hal::Status way_to(std::int64_t step, bool from_checkpoint);
@@ -119,6 +138,7 @@ class Timeline {
   std::string no_way_back_, no_checkpoint_;
 
   std::int64_t step_ = 0, latest_ = 0;  // where the run is, and where it has been
+  std::int64_t recorded_ = 0;           // at most `latest_`
   std::int64_t first_step_ = 0;         // from where on ticks and steps go side by side
   hal::Tick base_tick_ = 0;             // of that step
   hal::Tick tick_before_ = 0;
@@ -132,6 +152,7 @@ class Timeline {
   std::size_t applied_ = 0;      // of these, up to this moment
   std::size_t first_touch_ = 0;  // that can be undone
   std::size_t told_ = 0;
+  std::uint64_t tellings_ = 0;
   bool went_back_ = false;  // to be told
   bool warned_ = false;
 };

@@ -126,6 +126,43 @@ TEST(Timeline, UndoesTheLastTouch) {
   EXPECT_EQ(run.new_ticks, straight.new_ticks);
 }
 
+TEST(Timeline, BringsBackWhatATouchOfThePastHadDropped) {
+  const Scene scene = crowd();
+  Held run(scene);
+  run.walk(10);
+  ASSERT_EQ(run.error_of({{"do", "halt"}, {"robot", "ep1"}}), "");
+  run.walk(20);
+  const auto straight = run.new_ticks;
+  const auto told = run.events;
+
+  // Nothing was told of the other way: the record still has the first one.
+  run.hash_at(5);
+  EXPECT_EQ(run.ask(move_to("ep2", 1.4, 1.4))["dropped_ticks"], 25);
+  EXPECT_EQ(run.ask({{"do", "undo"}})["tick"], 5);
+  EXPECT_EQ(run.live().state().latest, 30);
+  EXPECT_EQ(run.hash_at(30), straight.at(30));
+  run.walk(1);
+  EXPECT_EQ(run.events, told);
+
+  // The record has the other way: the first one is recorded again.
+  run.hash_at(5);
+  ASSERT_EQ(run.error_of(move_to("ep2", 1.4, 1.4)), "");
+  run.walk(10);
+  ASSERT_NE(run.hash(), straight.at(15));
+  run.ask({{"do", "undo"}});
+  EXPECT_EQ(run.live().state().latest, 31);
+  ASSERT_EQ(run.error_of({{"do", "go_to"}, {"tick", 30}}), "");
+  while (run.tick() < 30) std::this_thread::yield();
+  run.walk(1);
+  EXPECT_EQ(run.new_ticks.at(15), straight.at(15));
+  LiveOptions again = Held::paused();
+  again.repeat = actions_of(run.events);
+  ASSERT_EQ(again.repeat.size(), 1U);
+  Held repeated(scene, again);
+  repeated.walk(31);
+  EXPECT_EQ(repeated.hash(), run.hash());
+}
+
 TEST(Timeline, BeginsAnewWithAnotherSeed) {
   Held run(crowd());
   run.walk(10);
