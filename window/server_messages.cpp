@@ -66,7 +66,9 @@ void Server::greet(Viewer& viewer) {
     if (const auto found = last.find(type); found != last.end()) viewer.send({found->second, false}, type);
   };
   send("hello");
-  viewer.send({shared(hal::to_text({{"type", "role"}, {"role", name_of(viewer.role())}})), false});
+  // `look_on` is for a link that an operator hands on.
+  const Json role{{"type", "role"}, {"role", name_of(viewer.role())}, {"look_on", viewers_token}};
+  viewer.send({shared(hal::to_text(role)), false});
   for (const auto& [type, text] : last) {
     if (type != "hello") send(type);
   }

@@ -149,6 +149,7 @@ std::vector<Json> add_layers(core::LayerSet& layers, const core::Observation& no
         rows.push_back({{"label", row.label}, {"value", row.value}, {"unit", row.unit}});
       panels.push_back({{"type", "panel"},
                         {"layer", name},
+                        {"tick", frame.tick},
                         {"title", picture.panel->title().empty() ? std::string(name) : picture.panel->title()},
                         {"rows", std::move(rows)}});
     }
