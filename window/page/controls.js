@@ -1,9 +1,9 @@
 // Sliders, switches and buttons that hooks and controllers declare.
-import { h, section, toast, numberText } from './html.js';
+import { h, section, numberText } from './html.js';
 
 export class Controls {
-  constructor(world, connection, host) {
-    this.connection = connection;
+  constructor(world, connection, commands, host) {
+    this.commands = commands;
     const { element, body } = section('Controls', true, 'controls');
     this.element = element;
     this.body = body;
@@ -13,9 +13,8 @@ export class Controls {
     connection.on('controls', (message) => this.rebuild(message.controls));
   }
 
-  async command(command) {
-    const answer = await this.connection.ask(command);
-    if (!answer.ok) toast(answer.error, 'error');
+  command(command) {
+    return this.commands.carryOut(command);
   }
 
   rebuild(controls) {

@@ -68,6 +68,19 @@ export function ageText(seconds) {
 export const degrees = (radians) => (radians * 180) / Math.PI;
 export const radians = (degrees_) => (degrees_ * Math.PI) / 180;
 
+let alarm;
+/** Opens a dialog at its start. The emergency stop moves into it, to the same place on the screen: nothing covers, dims or blocks it. */
+export function openDialog(dialog) {
+  alarm ??= document.getElementById('alarm');
+  dialog.append(alarm);
+  dialog.addEventListener('close', () => (document.querySelector('dialog[open]') ?? document.body).append(alarm), { once: true });
+  dialog.showModal();
+  const first = dialog.querySelector('[autofocus], input, select') ?? dialog.querySelector('h2');
+  if (first.matches('h2')) first.tabIndex = -1;
+  first.focus();
+  dialog.scrollTop = 0;
+}
+
 /** A short message that goes away by itself; `kind` is "error" or "note". */
 export function toast(text, kind = 'note') {
   const host = document.getElementById('toasts');

@@ -1,33 +1,35 @@
 // The chosen robots side by side: every port field by field, published state, parameters; any value can be plotted, or stop the run.
 import { h, numberText, ageText, degrees, radians, toast } from './html.js';
-import { Plot } from './plot.js';
+import { openMenu } from './menu.js';
 
 const most_values = 64;    // of one field, shown
-const past_points = 600;
 
 export class Inspector {
-  constructor(world, connection, selection, timeline, touch, host) {
-    Object.assign(this, { world, connection, selection, timeline, touch, host });
+  constructor(world, connection, selection, commands, plots, touch, host) {
+    Object.assign(this, { world, connection, selection, commands, plots, touch, host });
     this.cards = new Map();  // by robot id
-    this.plot = new Plot(world, (tick) => world.can.has('back') && timeline.goTo(tick));
-    this.plot.loadPast = () => this.loadPast();
-    this.plot.onClear = () => this.markPlotted();
     this.stop = h('form', { class: 'stop', hidden: true });
     this.columns = h('div', { class: 'columns' });
     this.makeControl = null;  // of a robot's controls; see controls.js
-    host.append(h('div', { class: 'row head' }, h('h2', {}, 'Chosen'), h('span', { class: 'spacer' }),
-      h('button', { class: 'quiet', 'aria-label': 'Close, choose nothing (Escape)', onclick: () => selection.clear() }, '×')), this.plot.element, this.stop, this.columns);
+    this.head = h('div', { class: 'row head' }, h('h2', {}, 'Chosen'), h('span', { class: 'spacer' }),
+      h('button', { class: 'quiet', 'aria-label': 'Close, choose nothing (Escape)', onclick: () => selection.clear() }, '×'));
+    host.append(plots.element, this.head, this.stop, this.columns);
+    plots.on('change', () => this.plotted());
     selection.on('change', () => this.choose());
     world.on('hello', () => this.subscribe());
     world.on('marks', () => this.showHalted());
     connection.on('inspection', (message) => this.take(message));
-    this.lastTick = 0;
+  }
+
+  showHost() {
+    this.head.hidden = this.selection.ids.size === 0;
+    this.plots.element.classList.toggle('alone', this.head.hidden);
+    this.host.hidden = this.head.hidden && this.plots.list.length === 0;
   }
 
   choose() {
     const { ids } = this.selection;
-    this.host.hidden = ids.size === 0;
-    document.body.classList.toggle('with-right', ids.size > 0);
+    this.showHost();
     for (const [id, card] of this.cards) {
       if (ids.has(id)) continue;
       card.element.remove();
@@ -39,13 +41,13 @@ export class Inspector {
 
   subscribe() {
     if (!this.connection.isOpen) return;
-    this.connection.ask({ do: 'inspect', robots: [...this.selection.ids] }).then((answer) => {
+    this.connection.ask({ do: 'inspect', robots: [...new Set([...this.selection.ids, ...this.plots.robots])] }).then((answer) => {
       if (!answer.ok) toast(answer.error, 'error');
     });
   }
 
   addCard(id) {
-    const card = { id, fields: new Map(), open: new Set() };
+    const card = { id, fields: new Map(), open: new Set(), asks: new Map() };
     card.summary = h('p', { class: 'minor' });
     card.pose = h('p', { class: 'pose' });
     card.halt = h('button', { onclick: () => this.touch.halt(id, !this.isHalted(id)) }, 'Halt');
@@ -97,15 +99,13 @@ export class Inspector {
   }
 
   take(message) {
-    if (message.tick < this.lastTick && !this.world.state.paused) this.plot.forgetAfter(message.tick);
-    this.lastTick = message.tick;
     for (const robot of message.robots ?? []) {
       const card = this.cards.get(robot.id);
-      if (card !== undefined) this.show(card, robot, message.tick);
+      if (card !== undefined) this.show(card, robot);
     }
   }
 
-  show(card, robot, tick) {
+  show(card, robot) {
     card.element.classList.toggle('gone', robot.alive === false);
     if (robot.alive === false) {
       card.summary.textContent = 'This robot is gone.';
@@ -115,9 +115,7 @@ export class Inspector {
     card.summary.textContent = [robot.kind, robot.controller].filter(Boolean).join(' · ') + halted;
     const { pose } = robot;
     if (pose) {
-      this.value(card, tick, this.entry('pose', 'pose', 'x', 0), pose.x);
       card.pose.textContent = `x ${pose.x.toFixed(3)} m  y ${pose.y.toFixed(3)} m  z ${(pose.z ?? 0).toFixed(3)} m  ${degrees(pose.heading).toFixed(1)}°`;
-      for (const field of ['y', 'z', 'heading']) this.value(card, tick, this.entry('pose', 'pose', field, 0), pose[field]);
     }
     const groups = [];
     if (pose) groups.push({ key: 'pose', title: 'pose', fields: ['x', 'y', 'z', 'heading'].map((name) => ({ name, unit: name === 'heading' ? 'rad' : 'm', values: [pose[name] ?? 0] })), role: 'pose', port: 'pose' });
@@ -144,37 +142,29 @@ export class Inspector {
         cell.bars?.(values);
         values.slice(0, most_values).forEach((value, index) => {
           if (cell.values[index] !== undefined) cell.values[index].firstChild.data = numberText(value);
-          this.value(card, tick, this.entry(group.role, group.port, field.name, index), value);
         });
       });
     }
-  }
-
-  entry(role, port, field, index) {
-    return { role, port, field, index };
-  }
-
-  key(robot, { role, port, field, index }) {
-    return [robot, role, port, field, index].join('\n');
-  }
-
-  value(card, tick, entry, value) {
-    const key = this.key(card.id, entry);
-    if (this.plot.has(key)) this.plot.take(key, tick, value);
   }
 
   /** False: not now, somebody is at one of its sliders. */
   rebuild(card, groups, params, controls) {
     if (card.ports.contains(document.activeElement) && document.activeElement.matches('.control *')) return false;
     card.fields.clear();
+    card.asks.clear();
     const sections = groups.map((group) => {
       const age = h('span', { class: 'minor' }), validity = h('span', { class: 'invalid' });
       const rows = [];
       const fields = group.fields.map((field) => {
         const values = Array.isArray(field.values) ? field.values.slice(0, most_values) : [field.values];
         const many = values.length > 3;
-        const buttons = values.map((_, index) => h('button', { class: 'value', 'data-field': `${group.role}.${group.port}.${field.name}.${index}`, title: many ? `${field.name}[${index}]: plot or stop` : 'Plot it or stop the run by it',
-          onclick: (event) => this.menu(card.id, this.entry(group.role, group.port, field.name, index), field.unit, event.currentTarget) }, '–'));
+        const buttons = values.map((_, index) => {
+          const entry = { role: group.role, port: group.port, field: field.name, index };
+          const button = h('button', { class: 'value', 'data-field': `${group.role}.${group.port}.${field.name}.${index}`, title: many ? `${field.name}[${index}]: plot or stop` : 'Plot it or stop the run by it',
+            onclick: () => this.menu(card.id, entry, field.unit, button) }, '–');
+          card.asks.set(button, { robot: card.id, ...entry });
+          return button;
+        });
         const cell = { values: buttons };
         const head = h('th', { scope: 'row', title: field.doc ?? '' }, field.name);
         if (many) {
@@ -202,84 +192,26 @@ export class Inspector {
       sections.unshift(h('details', { class: 'port', open: true }, h('summary', {}, h('span', { class: 'port-name' }, 'controls')), controls.map((control) => this.makeControl(control))));
     }
     card.ports.replaceChildren(...sections);
-    this.markPlotted();
+    this.markPlotted(card);
     return true;
   }
 
   /** What can be done with a value. */
   menu(robot, entry, unit, button) {
-    document.querySelector('.menu')?.remove();
-    const key = this.key(robot, entry);
-    const name = `${robot} ${[entry.port, entry.field].filter(Boolean).join('.')}${entry.index > 0 ? `[${entry.index}]` : ''}`;
-    const close = () => {
-      if (menu.isConnected) menu.remove();
-      button.focus();
-    };
-    const item = (label, call) => h('button', { role: 'menuitem', onclick: () => {
-      close();
-      call();
-    } }, label);
-    const menu = h('div', { class: 'menu', role: 'menu', 'aria-label': name },
-      this.plot.has(key) ? item('Take it off the plot', () => {
-        this.plot.remove(key);
-        this.markPlotted();
-      }) : item('Plot', () => this.addToPlot(key, name, unit, robot, entry)),
-      this.world.can.has('pause') && this.world.hello.mode !== 'record' ? item('Stop when …', () => this.openStop(robot, entry, unit, button.textContent)) : null);
-    menu.addEventListener('keydown', (event) => {
-      if (event.key === 'Escape') close();
-      if (event.key === 'ArrowDown' || event.key === 'ArrowUp') {
-        event.preventDefault();
-        const items = [...menu.children];
-        items[(items.indexOf(document.activeElement) + (event.key === 'ArrowDown' ? 1 : items.length - 1)) % items.length].focus();
-      }
-      event.stopPropagation();
-    });
-    menu.addEventListener('focusout', (event) => {
-      if (event.relatedTarget !== null && !menu.contains(event.relatedTarget)) menu.remove();
-    });
-    const box = button.getBoundingClientRect();
-    menu.style.left = `${Math.min(box.left, window.innerWidth - 190)}px`;
-    menu.style.top = `${Math.min(box.bottom + 2, window.innerHeight - 90)}px`;
-    document.body.append(menu);
-    menu.firstChild.focus();
+    const mayStop = this.world.can.has('pause') && this.world.hello.mode !== 'record';
+    openMenu(`${robot} ${entry.field}`, button, [...this.plots.choices({ robot, ...entry }, unit),
+      ...(mayStop ? [['Stop when …', () => this.openStop(robot, entry, unit, button.textContent)]] : [])]);
   }
 
-  addToPlot(key, name, unit, robot, entry) {
-    this.plot.add(key, name, unit, { robot, ...entry });
-    this.markPlotted();
-    this.plot.element.scrollIntoView({ block: 'nearest' });
+  /** After another choice of plots. */
+  plotted() {
+    this.showHost();
     this.subscribe();  // values come anew, also while the run is paused
-    if (this.world.hello?.mode === 'record') this.loadPast();
+    for (const card of this.cards.values()) this.markPlotted(card);
   }
 
-  markPlotted() {
-    for (const card of this.cards.values()) {
-      for (const button of card.element.querySelectorAll('button.value')) button.classList.remove('plotted');
-    }
-    for (const { ask } of this.plot.series.values()) {
-      const card = this.cards.get(ask.robot);
-      card?.element.querySelector(`button.value[data-field="${CSS.escape(`${ask.role}.${ask.port}.${ask.field}.${ask.index}`)}"]`)?.classList.add('plotted');
-    }
-  }
-
-  /** Asks for the values from the begin of the run on. */
-  async loadPast() {
-    const { state } = this.world;
-    const to = this.world.hello?.mode === 'record' ? state.latest : Math.max(this.world.tick, state.tick ?? 0), from = state.first ?? 0;
-    const every = Math.max(1, Math.ceil((to - from) / past_points));
-    this.plot.hint.textContent = 'The past is being computed …';
-    let said = 'All values from the begin on.';
-    for (const [key, { ask }] of [...this.plot.series]) {
-      const answer = await this.connection.ask({ do: 'history', ...ask, from, to, every });
-      if (answer.ok) {
-        this.plot.takePast(key, answer.ticks, answer.values);
-        if (answer.bounded) said = `Only ${answer.bounded}.`;
-      } else {
-        said = answer.error;
-        toast(answer.error, 'error');
-      }
-    }
-    this.plot.hint.textContent = said;
+  markPlotted(card) {
+    for (const [button, ask] of card.asks) button.classList.toggle('plotted', this.plots.find(ask) !== undefined);
   }
 
   openStop(robot, entry, unit, value) {
@@ -290,11 +222,10 @@ export class Inspector {
     this.stop.onsubmit = async (event) => {
       event.preventDefault();
       const { role, port, field, index } = entry;
-      const answer = await this.connection.ask({ do: 'stop_when', robot: anybody.checked ? '*' : robot, role, port, field, index, op: op.value, value: Number(limit.value) });
-      if (!answer.ok) return toast(answer.error, 'error');
+      const answer = await this.commands.carryOut({ do: 'stop_when', robot: anybody.checked ? '*' : robot, role, port, field, index, op: op.value, value: Number(limit.value) });
+      if (!answer.ok) return;
       this.stop.hidden = true;
       toast(`The run stops when ${field} ${op.value} ${limit.value} ${unit ?? ''}`);
-      return undefined;
     };
     this.stop.replaceChildren(h('strong', {}, `Stop when ${[entry.port, entry.field].filter(Boolean).join('.')}`), op, limit, unit ?? '', h('label', { class: 'switch' }, anybody, 'of any robot'),
       h('button', { class: 'main' }, 'Set'), h('button', { type: 'button', onclick: () => (this.stop.hidden = true) }, 'Cancel'));

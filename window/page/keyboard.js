@@ -1,12 +1,12 @@
 // Everything by keys, and the list of them.
-import { h } from './html.js';
+import { h, openDialog } from './html.js';
 
 const groups = [
   ['Time', [['space', 'play, pause'], ['.', 'one tick'], [',', 'one tick back'], ['[ ]', 'slower, faster'], ['Home End', 'first, newest tick'], ['Shift+R', 'start anew, with a seed'], ['u', 'undo what was touched last']]],
   ['Camera', [['← → ↑ ↓', 'turn; from the top: move'], ['Shift+arrows', 'move over the floor'], ['+ −', 'nearer, farther'], ['t', 'from the top, and back'], ['f', 'follow the chosen robot'], ['h', 'the whole arena']]],
   ['Robots', [['n p', 'next, previous robot'], ['/', 'find by id'], ['click, Shift+click', 'choose, choose one more'], ['Esc', 'choose nothing']]],
   ['Touch', [['m', 'touch or only look'], ['arrows', 'while touching: move what is chosen (Shift: ten times so far)'], ['< >', 'while touching: turn it'], ['x', 'halt or release the chosen robots'], ['e', 'emergency stop of real robots']]],
-  ['Page', [['v', 'panels on and off'], ['l', 'log'], ['c', 'what colours say: as they are, kind, state, density'], ['s', 'save the picture'], ['?', 'this list']]],
+  ['Page', [['v', 'panels on and off'], ['l', 'log'], ['c', 'what colours say: as they are, kind, state, density'], ['s', 'save the picture'], ['w', 'record a film, and end it'], ['?', 'this list']]],
 ];
 
 /** `page` has everything that keys can do; see main.js. */
@@ -19,16 +19,20 @@ export class Keyboard {
       h('p', { class: 'minor' }, 'With a finger: one turns, two move and zoom, a tap chooses. With a mouse: left turns, right or Shift moves, the wheel zooms.'),
       h('button', { class: 'main', onclick: () => this.help.close() }, 'Close'));
     document.body.append(this.help);
-    document.getElementById('help-button').addEventListener('click', () => this.help.showModal());
+    document.getElementById('help-button').addEventListener('click', () => openDialog(this.help));
     document.addEventListener('keydown', (event) => this.press(event));
   }
 
   press(event) {
-    if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector('dialog[open]') !== null) return;
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
     const target = event.target;
     const writes = target instanceof Element && target.matches('input:not([type=checkbox]):not([type=range]), select, textarea');
     if (writes) {
       if (event.key === 'Escape') target.blur();
+      return;
+    }
+    if (document.querySelector('dialog[open]') !== null) {
+      if (event.key === 'e') this.page.real.emergencyStop();
       return;
     }
     const onWidget = target instanceof Element && target.matches('button, summary, a, input, [role=menuitem]');
@@ -83,7 +87,8 @@ export class Keyboard {
       l: () => (log.element.open = !log.element.open),
       c: () => this.page.toggleColors(),
       s: () => this.page.savePicture(),
-      '?': () => this.help.showModal(),
+      w: () => this.page.film.toggle(),
+      '?': () => openDialog(this.help),
     };
     if (actions[key] === undefined) return false;
     actions[key]();

@@ -1,6 +1,6 @@
-// Layers that the run draws (rays, links, trails …): switches for them, their lines and texts in the picture, and their panels of values.
+// Layers that the run draws (rays, links, trails …): switches for them, their lines and texts in the picture.
 import * as THREE from './three.module.js';
-import { h, section, numberText, toast } from './html.js';
+import { h, section, toast } from './html.js';
 
 export class Layers {
   /** `selection` says whose layers are asked for when "all robots" is off. */
@@ -9,11 +9,9 @@ export class Layers {
     this.on = new Set();
     this.drawings = new Map();  // by index: lines
     this.texts = new Map();     // by index
-    this.panels = new Map();    // by name: element
     const { element, body } = section('Layers', true, 'layers');
     this.list = body;
-    this.panelHost = h('div', { class: 'layer-panels' });
-    host.append(element, this.panelHost);
+    host.append(element);
     this.material = new THREE.ShaderMaterial({
       vertexShader: 'attribute vec4 tint; varying vec4 color; void main() { color = tint; gl_Position = projectionMatrix * (viewMatrix * vec4(position, 1.0)); }',
       fragmentShader: 'varying vec4 color; void main() { gl_FragColor = color; }',
@@ -26,7 +24,6 @@ export class Layers {
       this.texts.set(message.layer, message.texts);
       view.invalidate();
     });
-    connection.on('panel', (message) => this.takePanel(message));
     selection.on('change', () => {
       if (!this.everybody && this.on.size > 0) this.ask();
     });
@@ -41,14 +38,13 @@ export class Layers {
     for (const drawing of this.drawings.values()) this.view.scene.remove(drawing);
     this.drawings.clear();
     this.texts.clear();
-    this.panels.clear();
-    this.panelHost.replaceChildren();
+    const drawn = layers.filter((layer) => !layer.panel);  // others: measures.js
     const switchOf = (layer) => h('label', { class: 'switch', title: layer.summary },
       h('input', { type: 'checkbox', 'data-layer': layer.name, checked: this.on.has(layer.name), onchange: (event) => this.toggle(layer.name, event.target.checked) }),
       h('span', {}, layer.name.replaceAll('_', ' ')));
-    const idle = layers.filter((layer) => layer.idle);
+    const idle = drawn.filter((layer) => layer.idle);
     this.list.replaceChildren(
-      ...layers.filter((layer) => !layer.idle).map(switchOf),
+      ...drawn.filter((layer) => !layer.idle).map(switchOf),
       idle.length === 0 ? '' : h('details', {}, h('summary', {}, 'of sensors that no robot has'), ...idle.map(switchOf)),
       h('label', { class: 'switch minor' },
         h('input', { type: 'checkbox', id: 'layers-everybody', checked: this.everybody, onchange: (event) => {
@@ -56,19 +52,14 @@ export class Layers {
           this.ask();
         } }),
         h('span', {}, 'of all robots, not only the chosen')));
-    if (layers.length === 0) this.list.replaceChildren(h('p', { class: 'minor' }, 'This run has none.'));
+    if (drawn.length === 0) this.list.replaceChildren(h('p', { class: 'minor' }, 'This run has none.'));
     if (this.on.size > 0) this.ask();
   }
 
   toggle(name, on) {
     if (on) this.on.add(name);
     else this.on.delete(name);
-    if (!on) {
-      const index = this.layers.findIndex((layer) => layer.name === name);
-      this.drop(index);
-      this.panels.get(name)?.remove();
-      this.panels.delete(name);
-    }
+    if (!on) this.drop(this.layers.findIndex((layer) => layer.name === name));
     this.ask();
   }
 
@@ -107,18 +98,6 @@ export class Layers {
     this.drawings.set(frame.number, drawing);
     this.view.scene.add(drawing);
     this.view.invalidate();
-  }
-
-  takePanel(message) {
-    if (!this.on.has(message.layer)) return;
-    let panel = this.panels.get(message.layer);
-    if (panel === undefined) {
-      panel = h('section', { class: 'layer-panel', 'aria-label': message.title });
-      this.panels.set(message.layer, panel);
-      this.panelHost.append(panel);
-    }
-    panel.replaceChildren(h('h3', {}, message.title),
-      h('table', {}, message.rows.map((row) => h('tr', {}, h('th', {}, row.label), h('td', {}, `${numberText(row.value)} ${row.unit ?? ''}`)))));
   }
 
   label(pen, camera) {

@@ -1,6 +1,7 @@
 // The log of the run: incidents, what was touched, and what robots and hooks said; a click goes to tick and robot.
-import { h, numberText, timeText } from './html.js';
+import { h, timeText } from './html.js';
 import { Events } from './events.js';
+import { actionBy } from './words.js';
 
 const most_entries = 5000, most_shown = 300;
 const names = { incident: 'Incidents', action: 'Touches', log: 'Messages' };
@@ -64,11 +65,7 @@ export class Log extends Events {
   }
 }
 
-/** "move x 0.5 y -0.4" of an action, which comes as JSON. */
+/** An action comes as JSON. */
 function textOf(entry) {
-  if (entry.kind !== 'action' || !entry.text.startsWith('{')) return entry.text;
-  const words = (value) => (typeof value === 'object' && value !== null ? Object.entries(value).map(([name, inner]) => `${name} ${words(inner)}`).join(' ') : typeof value === 'number' ? numberText(value) : String(value));
-  const { do: name, kind, ...rest } = JSON.parse(entry.text);
-  if (rest.robot === entry.robot) delete rest.robot;
-  return `${(name ?? kind ?? '').replaceAll('_', ' ')} ${words(rest)}`;
+  return entry.kind === 'action' && entry.text.startsWith('{') ? actionBy(JSON.parse(entry.text)) : entry.text;
 }

@@ -12,6 +12,11 @@ import { Timeline } from './timeline.js';
 import { Inspector } from './inspector.js';
 import { Log } from './log.js';
 import { Touch } from './touch.js';
+import { Commands } from './commands.js';
+import { Plots } from './plots.js';
+import { Measures } from './measures.js';
+import { Film } from './film.js';
+import { Layout } from './layout.js';
 import { Controls } from './controls.js';
 import { Areas } from './areas.js';
 import { Real } from './real.js';
@@ -42,14 +47,17 @@ function start() {
     const pose = world.poseOf(id);
     if (pose !== null) camera.lookAt(pose, Math.max(60 * bodySize(world.body(world.members.index.get(id))).radius, 0.4 * camera.homeDistance));
   });
+  const commands = page.commands = new Commands(world, connection);
+  page.plots = new Plots(world, connection, (tick) => world.can.has('back') && page.timeline.goTo(tick));
   page.areas = new Areas(view, world);
-  page.real = new Real(view, world, connection, selection, robots, element('alarm'), left);
-  page.controls = new Controls(world, connection, left);
+  page.real = new Real(view, world, connection, commands, selection, robots, element('alarm'), left);
+  page.controls = new Controls(world, connection, commands, left);
   page.layers = new Layers(view, world, connection, selection, left);
-  page.touch = new Touch(view, world, connection, selection, scene, left);
+  page.measures = new Measures(world, connection, page.layers, page.plots, left);
+  page.touch = new Touch(view, world, commands, selection, scene, left);
   page.log = new Log(world, connection, element('bottom'));
-  page.timeline = new Timeline(world, connection, page.log, element('bottom'), element('now'));
-  page.inspector = new Inspector(world, connection, selection, page.timeline, page.touch, element('right'));
+  page.timeline = new Timeline(world, commands, page.log, element('bottom'), element('now'));
+  page.inspector = new Inspector(world, connection, selection, commands, page.plots, page.touch, element('right'));
 
   page.toggleTop = () => {
     camera.setTop(!camera.isTop);
@@ -76,7 +84,10 @@ function start() {
   page.toggleHalt = () => {
     for (const id of selection.ids) page.touch.halt(id, !page.inspector.isHalted(id));
   };
-  page.savePicture = async () => download(`${world.hello?.experiment || 'tandem'}-${world.tick}.png`, await view.snapshot());
+  const pictureName = () => `${world.hello?.experiment || 'tandem'}-${world.tick}`;
+  page.savePicture = async () => download(`${pictureName()}.png`, await view.snapshot());
+  page.film = new Film(view, pictureName);
+  page.layout = new Layout(page);
   page.touch.onChange = showTools;
 
   // The picture.
@@ -123,6 +134,7 @@ function start() {
     page.framesDrawn++;
     connection.socket.send(JSON.stringify({ do: 'got', frame: acknowledged.number }));
   };
+  view.onLost = (lost) => banner('picture', lost ? 'The graphics driver took the picture away; it comes back when the driver gives it back, or when you reload the page. The run and all commands go on.' : '');
   selection.on('change', () => view.invalidate());
   world.on('members', () => {
     for (const id of [...selection.ids]) if (!world.members.index.has(id)) selection.leave(id);
@@ -137,7 +149,7 @@ function start() {
   look.body.append(
     h('label', { class: 'control' }, h('span', {}, 'Robots in the colour of'), page.colors.select),
     h('label', { class: 'control' }, h('span', {}, 'Detail'), h('select', { id: 'detail', onchange: (event) => setDetail(event.target.value) }, ['auto', 'full', 'coarse'].map((level) => h('option', {}, level)))),
-    h('div', { class: 'row' }, h('button', { onclick: page.savePicture }, 'Save this view'),
+    h('div', { class: 'row' }, h('button', { onclick: page.savePicture }, 'Save this view'), page.film.button, h('button', { onclick: () => page.layout.open() }, 'Link…'),
       ...['svg', 'png'].map((form) => h('a', { class: 'button', href: `/picture.${form}?token=${encodeURIComponent(token)}`, target: '_blank', rel: 'noopener' }, `Picture as ${form.toUpperCase()}`))));
   left.append(look.element);
   const dropped = h('p', { id: 'dropped', class: 'minor', role: 'status', hidden: true });
@@ -154,7 +166,7 @@ function start() {
     link.textContent = state === 'open' ? 'live' : state === 'lost' ? 'no link' : 'refused';
     link.title = text;
     document.body.classList.toggle('unlinked', state !== 'open');
-    banner(state === 'open' ? '' : text);
+    banner('link', state === 'open' ? '' : text);
     if (state === 'open') askRate();
   });
   function askRate() {
@@ -166,7 +178,7 @@ function start() {
     document.title = `${hello.experiment || 'Tandem'} – Tandem`;
     element('mode').textContent = { run: 'simulation', mixed: 'mixed reality', record: 'record' }[hello.mode] ?? hello.mode;
     if (hello.mode === 'record') link.textContent = 'connected';
-    if (hello.protocol !== 2) banner(`This page speaks protocol 2, the server ${hello.protocol}: reload the page.`);
+    if (hello.protocol !== 2) banner('link', `This page speaks protocol 2, the server ${hello.protocol}: reload the page.`);
     showTools();
   });
   connection.on('role', ({ role }) => { element('role').hidden = role !== 'viewer'; });
@@ -185,9 +197,12 @@ function start() {
   connection.open();
 }
 
-function banner(text) {
-  element('banner').textContent = text;
-  element('banner').hidden = text === '';
+const banners = new Map();
+/** Says what is wrong with the link or the picture; an empty text: nothing is. */
+function banner(of, text) {
+  banners.set(of, text);
+  element('banner').textContent = [...banners.values()].filter(Boolean).join(' ');
+  element('banner').hidden = element('banner').textContent === '';
 }
 
 start();

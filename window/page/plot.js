@@ -5,7 +5,7 @@ import { roundLength } from './scene.js';
 
 const most_points = 20000;
 
-/** `goTo(tick)` is called with a click. */
+/** `goTo(tick)` is called with a click, `onPointer(tick)` with a tick under the pointer or null, `onChange()` when a series is taken away. */
 export class Plot {
   constructor(world, goTo) {
     this.world = world;
@@ -15,17 +15,12 @@ export class Plot {
     this.canvas = h('canvas', { class: 'plot', tabindex: 0, role: 'img', 'aria-label': 'Plot of the chosen fields over time' });
     this.legend = h('ul', { class: 'legend' });
     this.hint = h('p', { class: 'minor' }, 'The values since it was chosen; earlier ones with "Past".');
-    this.element = h('section', { class: 'plots', hidden: true }, this.canvas, this.legend,
+    this.marked = null;  // tick under the pointer, of this plot or another one
+    this.element = h('section', { class: 'plot-of', 'aria-label': 'Plot' }, this.canvas, this.legend,
       h('div', { class: 'row' }, h('button', { onclick: () => this.loadPast?.() , title: 'The values from the begin of the run' }, 'Past'),
         h('button', { onclick: () => this.save() }, 'Save CSV'), h('button', { onclick: () => this.clear() }, 'Clear')), this.hint);
-    this.canvas.addEventListener('pointermove', (event) => {
-      this.pointer_px = event.offsetX;
-      this.draw();
-    });
-    this.canvas.addEventListener('pointerleave', () => {
-      this.pointer_px = null;
-      this.draw();
-    });
+    this.canvas.addEventListener('pointermove', (event) => this.onPointer?.(this.tickAt(event.offsetX)));
+    this.canvas.addEventListener('pointerleave', () => this.onPointer?.(null));
     this.canvas.addEventListener('click', (event) => {
       const tick = this.tickAt(event.offsetX);
       if (tick !== null) this.goTo(tick);
@@ -47,15 +42,18 @@ export class Plot {
 
   remove(key) {
     this.series.delete(key);
-    if (this.series.size === 0) this.made = 0;
     this.show();
   }
 
   clear() {
     this.series.clear();
-    this.made = 0;
-    this.show();
-    this.onClear?.();
+    this.onChange?.();
+  }
+
+  /** A line at this tick, with the values there; null: at the newest one. */
+  mark(tick) {
+    this.marked = tick;
+    this.draw();
   }
 
   /** A new value. Ticks may come out of order after going back. */
@@ -109,7 +107,6 @@ export class Plot {
   }
 
   show() {
-    this.element.hidden = this.series.size === 0;
     this.legend.replaceChildren(...[...this.series.values()].map((line) => {
       line.valueText = h('output', {});
       const swatch = h('canvas', { class: 'swatch', width: 28, height: 8, 'aria-hidden': 'true' });
@@ -124,7 +121,7 @@ export class Plot {
       return h('li', {}, swatch, h('span', {}, line.name), line.valueText,
         h('button', { class: 'quiet', 'aria-label': `Remove ${line.name} from the plot`, onclick: () => {
           this.remove(line.key);
-          this.onClear?.();
+          this.onChange?.();
         } }, '×'));
     }));
     this.draw();
@@ -152,7 +149,7 @@ export class Plot {
   tickAt(x_px) {
     const range = this.range();
     if (range === null) return null;
-    const share = (x_px - left_px) / (this.canvas.clientWidth - left_px - right_px);
+    const share = (x_px - this.left_px) / (this.canvas.clientWidth - this.left_px - right_px);
     return Math.round(range.from + Math.min(1, Math.max(0, share)) * (range.to - range.from));
   }
 
@@ -175,17 +172,21 @@ export class Plot {
       return;
     }
     const { from, to, low, high } = range;
+    const step = roundLength((high - low) / 2.5);
+    const labels = [];
+    for (let value = Math.ceil(low / step) * step; value <= high; value += step) labels.push([value, axisText(value, step)]);
+    this.left_px = 8 + Math.max(24, ...labels.map(([, text]) => pen.measureText(text).width));
+    const { left_px } = this;
     const x = (tick) => left_px + ((tick - from) / (to - from)) * (width - left_px - right_px);
     const y = (value) => height - bottom_px - ((value - low) / (high - low)) * (height - bottom_px - top_px);
     pen.strokeStyle = faint;
     pen.fillStyle = ink;
     pen.lineWidth = 1;
-    const step = roundLength((high - low) / 2.5);
     pen.textAlign = 'right';
     pen.textBaseline = 'middle';
-    for (let value = Math.ceil(low / step) * step; value <= high; value += step) {
+    for (const [value, text] of labels) {
       line(pen, [[left_px, y(value)], [width - right_px, y(value)]]);
-      pen.fillText(numberText(Math.abs(value) < step / 1e6 ? 0 : Number(value.toPrecision(6))), left_px - 4, y(value));
+      pen.fillText(text, left_px - 4, y(value));
     }
     const perSecond = this.world.hello?.ticks_per_second || 10;
     const step_s = roundLength((to - from) / perSecond / 2.5);
@@ -204,15 +205,29 @@ export class Plot {
       pen.stroke();
     }
     pen.setLineDash([]);
-    const marked = this.pointer_px ? this.tickAt(this.pointer_px) : this.world.tick;
-    if (marked >= from && marked <= to) {
-      pen.strokeStyle = ink;
+    this.drawMarked(pen, range, x, y, ink);
+  }
+
+  /** The line at a tick; under the pointer with its time and a dot on each series, whose values stand in the legend. */
+  drawMarked(pen, { from, to }, x, y, ink) {
+    const marked = this.marked ?? this.world.tick;
+    const within = marked >= from && marked <= to;
+    if (within) {
+      pen.strokeStyle = pen.fillStyle = ink;
       pen.lineWidth = 1;
-      line(pen, [[x(marked), top_px], [x(marked), height - bottom_px]]);
+      line(pen, [[x(marked), top_px], [x(marked), this.canvas.clientHeight - bottom_px]]);
+      const left = x(marked) > this.canvas.clientWidth / 2;
+      pen.textAlign = left ? 'right' : 'left';
+      if (this.marked !== null) pen.fillText(`${Number(this.world.seconds(marked).toFixed(3))} s, tick ${marked}`, x(marked) + (left ? -5 : 5), top_px + 6);
     }
     for (const series of this.series.values()) {
       const at = Math.min(series.ticks.length - 1, lowerBound(series.ticks, marked));
       series.valueText.textContent = at < 0 ? '–' : `${numberText(series.values[at])} ${series.unit ?? ''}`;
+      if (at < 0 || !within || this.marked === null) continue;
+      pen.fillStyle = series.style.color;
+      pen.beginPath();
+      pen.arc(x(series.ticks[at]), y(series.values[at]), 3.5, 0, 7);
+      pen.fill();
     }
   }
 
@@ -225,7 +240,14 @@ export class Plot {
   }
 }
 
-const left_px = 48, right_px = 10, top_px = 8, bottom_px = 20;
+/** A number on an axis, with as many digits as its steps need. */
+function axisText(value, step) {
+  const order = (number) => Math.floor(Math.log10(Math.abs(number)) + 1e-9);
+  if (Math.abs(value) >= 1e6 || step < 1e-5) return Math.abs(value) < step / 2 ? '0' : value.toExponential(Math.max(0, order(value) - order(step)));
+  return (Math.abs(value) < step / 2 ? 0 : value).toFixed(Math.max(0, Math.ceil(-Math.log10(step) - 1e-9)));
+}
+
+const right_px = 10, top_px = 8, bottom_px = 20;
 
 function line(pen, points) {
   pen.beginPath();

@@ -1,10 +1,10 @@
 // Real robots: state of their links, why they do not drive, arming, and the emergency stop.
-import { h, section, toast, numberText, ageText } from './html.js';
+import { h, section, openDialog, toast, numberText, ageText } from './html.js';
 import { okabeIto } from './palette.js';
 
 export class Real {
-  constructor(view, world, connection, selection, robots, alarm, host) {
-    Object.assign(this, { view, world, connection, selection });
+  constructor(view, world, connection, commands, selection, robots, alarm, host) {
+    Object.assign(this, { view, world, connection, commands, selection });
     this.states = new Map();  // by id
     this.motions = new Map();  // verdicts of first motions, by id; null while one goes on
     this.stop = h('button', { class: 'estop', title: 'Stops all real robots (e)', onclick: () => this.emergencyStop() }, 'EMERGENCY STOP');
@@ -26,6 +26,7 @@ export class Real {
     world.on('hello', (hello) => {
       const real = hello.mode === 'mixed' || world.can.has('real');
       this.stop.hidden = !real;
+      document.body.classList.toggle('has-stop', real);
       element.hidden = !real;
     });
     connection.on('real', (message) => this.take(message));
@@ -36,10 +37,8 @@ export class Real {
     view.addItem(this);
   }
 
-  async command(command) {
-    const answer = await this.connection.ask(command);
-    if (!answer.ok) toast(answer.error, 'error');
-    else if (answer.note) toast(answer.note);
+  command(command) {
+    return this.commands.carryOut(command);
   }
 
   emergencyStop() {
@@ -113,7 +112,7 @@ export class Real {
       h('table', { class: 'preflight' }, answer.preflight.map((row) => h('tr', { class: row.finding }, h('td', {}, words[row.finding]), h('th', { scope: 'row' }, row.about), h('td', {}, row.check),
         h('td', {}, row.found, row.advice ? h('div', { class: 'minor' }, row.advice) : null)))),
       h('button', { class: 'main', onclick: () => this.dialog.close() }, 'Close'));
-    this.dialog.showModal();
+    openDialog(this.dialog);
   }
 
   /** Says what will move, and moves it when told so. The dialog is closed before: nothing may cover the emergency stop. */
@@ -125,7 +124,7 @@ export class Real {
     } }, h('h2', {}, `Move '${id}'?`), h('p', {}, `'${id}' turns on the spot by about 30° to the left and back, slowly. All other robots are to stand; whether they do is watched.`),
     h('p', { class: 'minor' }, 'EMERGENCY STOP (key e) stops it.'),
     h('div', { class: 'row' }, h('span', { class: 'spacer' }), h('button', { type: 'button', onclick: () => this.dialog.close() }, 'Cancel'), h('button', { class: 'main' }, `Move '${id}'`))));
-    this.dialog.showModal();
+    openDialog(this.dialog);
   }
 
   async move(id) {
@@ -158,7 +157,7 @@ export class Real {
     } }, h('h2', {}, `Replace '${id}'`), h('p', {}, 'It is stopped, for good. Its twin stays; the other robot stands until it is armed.'),
     h('div', { class: 'row' }, choice, link),
     h('div', { class: 'row' }, h('span', { class: 'spacer' }), h('button', { type: 'button', onclick: () => this.dialog.close() }, 'Cancel'), h('button', { class: 'main' }, 'Stop and replace'))));
-    this.dialog.showModal();
+    openDialog(this.dialog);
   }
 
   /** Where each source says that a chosen real robot is. */

@@ -1,13 +1,13 @@
 // The time of the run: play, pause, one tick, speed, and the bar on which any earlier tick can be chosen.
-import { h, icon, timeText, toast } from './html.js';
+import { h, icon, openDialog, timeText } from './html.js';
 
 const speeds = [0.1, 0.25, 0.5, 1, 2, 5, 10, 20, 50, null];  // times real time; null: as fast as it goes
 const most_marks = 400;
 
 /** `log` gives the marks on the bar. */
 export class Timeline {
-  constructor(world, connection, log, host, now) {
-    Object.assign(this, { world, connection, log, now });
+  constructor(world, commands, log, host, now) {
+    Object.assign(this, { world, commands, log, now });
     this.wanted = null;    // tick that is to be shown next
     this.seeking = false;  // a go_to is under way
     const button = (name, sign, label, call) => (this[name] = h('button', { title: label, 'aria-label': label, onclick: call }, icon(sign)));
@@ -23,9 +23,8 @@ export class Timeline {
     this.marks = h('canvas', { class: 'marks', 'aria-hidden': 'true' });
     this.ticks = h('output', { class: 'ticks' });
     this.why = h('span', { class: 'why', role: 'status' });
-    this.stopList = h('span', { class: 'why' });
     host.append(h('div', { class: 'timeline', role: 'group', 'aria-label': 'Time' }, this.resetButton, this.backButton, this.playButton, this.forwardButton, this.speed, this.reached,
-      h('div', { class: 'bar' }, this.marks, this.bar), this.ticks, this.undoButton), h('div', { class: 'timeline-why' }, this.why, this.stopList));
+      h('div', { class: 'bar' }, this.marks, this.bar), this.ticks, this.undoButton), h('div', { class: 'timeline-why' }, this.why, commands.line));
     this.dialog = h('dialog', { 'aria-label': 'Start anew' });
     document.body.append(this.dialog);
     world.on('state', () => this.show()).on('poses', () => this.showTick()).on('hello', () => this.show());
@@ -34,10 +33,8 @@ export class Timeline {
     this.show();
   }
 
-  async command(command) {
-    const answer = await this.connection.ask(command);
-    if (!answer.ok) toast(answer.error, 'error');
-    return answer;
+  command(command) {
+    return this.commands.carryOut(command);
   }
 
   get paused() {
@@ -98,10 +95,9 @@ export class Timeline {
   openReset() {
     if (!this.world.can.has('reset')) return;
     const seed = h('input', { type: 'number', min: 0, step: 1, value: this.world.state.seed ?? this.world.hello?.seed ?? 0, id: 'reset-seed' });
-    const start = async () => {
+    const start = () => {
       this.dialog.close();
-      const answer = await this.command({ do: 'reset', seed: Number(seed.value) });
-      if (answer.ok) toast(`started anew with seed ${seed.value}`);
+      this.command({ do: 'reset', seed: Number(seed.value) });
     };
     this.dialog.replaceChildren(h('form', { method: 'dialog', onsubmit: (event) => {
       event.preventDefault();
@@ -110,7 +106,7 @@ export class Timeline {
     h('label', {}, 'Seed ', seed),
     h('div', { class: 'row' }, h('button', { type: 'button', onclick: () => (seed.value = Math.floor(Math.random() * 1e6)) }, 'Another seed'),
       h('span', { class: 'spacer' }), h('button', { type: 'button', onclick: () => this.dialog.close() }, 'Cancel'), h('button', { class: 'main' }, 'Start anew'))));
-    this.dialog.showModal();
+    openDialog(this.dialog);
     seed.select();
   }
 

@@ -9,8 +9,8 @@ const nudge_m = 0.01;             // by a key; with shift ten times so far
 
 /** While `on`, a pointer that goes down on a thing drags it; else it moves the camera. */
 export class Touch {
-  constructor(view, world, connection, selection, scene, host) {
-    Object.assign(this, { view, world, connection, selection, scene });
+  constructor(view, world, commands, selection, scene, host) {
+    Object.assign(this, { view, world, commands, selection, scene });
     this.on = false;
     this.placing = null;  // called with the next place on the floor that is clicked
     this.thing = null;    // { object } or { light } that is chosen
@@ -31,12 +31,8 @@ export class Touch {
     return this.world.can.has('touch');
   }
 
-  async command(command) {
-    const answer = await this.connection.ask(command);
-    if (!answer.ok) toast(answer.error, 'error');
-    else if (answer.note) toast(answer.note);
-    else if (answer.dropped > 0) toast(`From here it is another run: ${answer.dropped} later touch${answer.dropped > 1 ? 'es' : ''} dropped.`);
-    return answer;
+  command(command) {
+    return this.commands.carryOut(command);
   }
 
   move(what, to) {

@@ -31,9 +31,11 @@ export class View {
     canvas.addEventListener('webglcontextlost', (event) => {
       event.preventDefault();
       this.lost = true;
+      this.onLost?.(true);
     });
     canvas.addEventListener('webglcontextrestored', () => {
       this.lost = false;
+      this.onLost?.(false);
       this.invalidate();
     });
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
@@ -82,7 +84,7 @@ export class View {
   }
 
   render(still = false) {
-    if (this.lost) return;
+    if (this.lost) return this.onPicture?.();  // frames go on coming
     clearTimeout(this.stillTimer);
     if (!still && this.inSoftware && this.quality.still) this.stillTimer = setTimeout(() => this.asked || this.render(true), still_ms);
     this.sharpen(still);
