@@ -93,15 +93,15 @@ struct Appearance {
   bool operator==(const Appearance&) const = default;
 };
 
-/// A fine link: what a body is made of, in views that come near.
+/// A fine link: a piece of a body, for near views.
 Appearance::Link piece(std::string_view shape, std::string_view color, Appearance::Point low_m,
                        Appearance::Point high_m);
 /// One that is round seen from above, on an axis through (x, y).
 Appearance::Link round_piece(std::string_view shape, std::string_view color, double x_m, double y_m, double radius_m,
                              double low_m, double high_m);
 
-/// What body, locomotion and all parts of the kind look like together, with the numbers of the joints that things sit
-/// on. What sits on a joint that no part has sits on the body.
+/// The looks of body, locomotion and all parts of the kind together, with the numbers of the joints that things sit
+/// on. Things on a joint that no part has sit on the body.
 Appearance appearance_of(const RobotKind& kind);
 
 /// Whether it is written "#rrggbb".

@@ -275,7 +275,7 @@ class RobotKind {
   void describe(ParamVisitor& v);
   /// What the element of a robot may say otherwise for that robot alone, in the order of the parts.
   void attributes(ParamVisitor& v);
-  /// Adds what body and locomotion look like to what the parts do, unless these say that they are all.
+  /// Adds the looks of body and locomotion to those of the parts, unless these say that they are all.
   void appear(Appearance& look) const;
   /// What makes the kind unusable, as in "has no body; …"; empty: nothing. Asked when it is registered.
   std::string flaw() const;

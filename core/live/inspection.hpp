@@ -21,7 +21,7 @@ hal::Json inspection_of(const Space& space, hal::Tick done, std::int64_t ticks_p
 
 /// Names of all that controllers publish, but for lists of values.
 std::vector<std::string> published_names(const Space& space);
-/// {"name", "values", "words"}: what each robot publishes under that name, in the order of the members that viewers
+/// {"name", "values", "words"}: the value of each robot under that name, in the order of the members that viewers
 /// know; null: nothing. "words" of an enumeration: its values from 0 on.
 hal::Json published_values(const Space& space, const std::string& name);
 

@@ -21,7 +21,7 @@ struct LegendEntry {
   std::string text;
 };
 
-/// Of what the picture shows: kinds, real and halted robots, lit LEDs, heights, paths, lamps, objects, borders.
+/// Of the things in the picture: kinds, real and halted robots, lit LEDs, heights, paths, lamps, objects, borders.
 std::vector<LegendEntry> legend_of(const Drawing& drawing, const PictureLook& look, bool full_detail,
                                    const std::function<bool(const Drawing::Robot&)>& shows);
 

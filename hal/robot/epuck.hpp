@@ -7,7 +7,7 @@ namespace tandem::hal::epuck {
 inline constexpr std::string_view kName = "e-puck";
 
 const RobotKind& kind();
-/// What body and wheels look like.
+/// The look of body and wheels.
 LookPart shell();
 
 }  // namespace tandem::hal::epuck

@@ -8,7 +8,7 @@ namespace tandem::hal::eyebot {
 inline constexpr std::string_view kName = "eye-bot";
 
 const RobotKind& kind();
-/// What body and rotors look like.
+/// The look of body and rotors.
 LookPart shell();
 
 }  // namespace tandem::hal::eyebot

@@ -8,7 +8,7 @@ namespace tandem::hal::footbot {
 inline constexpr std::string_view kName = "foot-bot";
 
 const RobotKind& kind();
-/// What body and wheels look like.
+/// The look of body and wheels.
 LookPart shell();
 
 }  // namespace tandem::hal::footbot

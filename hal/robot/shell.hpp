@@ -1,4 +1,4 @@
-// What the bodies of the program's robots look like, as a part that kinds from files may have, too.
+// The looks of the bodies of the program's robots, as a part that kinds from files may have, too.
 #pragma once
 #include <array>
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace tandem::hal {
 
-/// The body, wheels or rotors of a robot as its owner knows it. Changes nothing but what is seen.
+/// The body, wheels or rotors of a robot as its owner knows it. Changes the picture alone.
 struct ShellPart {
   static constexpr std::string_view kName = "shell";
-  static constexpr std::string_view kDoc = "What body and wheels or rotors look like; without it they are a drum.";
+  static constexpr std::string_view kDoc = "The look of body and wheels or rotors; without it they are a drum.";
   static constexpr std::array<std::string_view, 4> kForms = {"e-puck", "eye-bot", "foot-bot", "thymio"};
   std::string of = "e-puck";  ///< of kForms
   std::string source = {};

@@ -11,7 +11,7 @@ inline constexpr std::size_t kCircleLeds = 8;
 inline constexpr std::size_t kBottomLeft = 8, kBottomRight = 9, kTop = 10;
 
 const RobotKind& kind();
-/// What body and wheels look like.
+/// The look of body and wheels.
 LookPart shell();
 
 }  // namespace tandem::hal::thymio
