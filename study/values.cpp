@@ -27,10 +27,7 @@ std::string text_of(double value) {
   return {digits, static_cast<std::size_t>(n)};
 }
 
-struct Quantity {
-  double number = 0.0;
-  std::string unit;  ///< with a space before it
-};
+}  // namespace
 
 hal::Result<Quantity> quantity_of(const std::string& text) {
   const std::string word = trimmed(text);
@@ -41,8 +38,6 @@ hal::Result<Quantity> quantity_of(const std::string& text) {
   if (!unit.empty()) q.unit = " " + unit;
   return q;
 }
-
-}  // namespace
 
 hal::Result<std::vector<std::string>> list_of(const std::string& text) {
   const char between = text.find(';') != std::string::npos ? ';' : ',';

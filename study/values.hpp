@@ -8,6 +8,13 @@
 
 namespace tandem::study {
 
+struct Quantity {
+  double number = 0.0;
+  std::string unit;  ///< with a space before it
+};
+/// "5 cm/s" as a number and what stands behind it. Error: it does not begin with a finite number.
+hal::Result<Quantity> quantity_of(const std::string& text);
+
 /// "1 m, 2 m": the values between commas, or between semicolons where there is one. Errors: an empty one; the same one
 /// twice.
 hal::Result<std::vector<std::string>> list_of(const std::string& text);

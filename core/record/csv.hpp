@@ -12,4 +12,13 @@ inline std::string csv_cell(const std::string& text) {
   return quoted + "\"";
 }
 
+/// The head of a column of numbers: "x_m", "speed_m_s", "charge".
+inline std::string column_title(const std::string& name, const std::string& unit) {
+  std::string title = name;
+  if (unit.empty() || unit == "%") return title;
+  title += '_';
+  for (const char c : unit) title += c == '/' ? '_' : c;
+  return title;
+}
+
 }  // namespace tandem::core

@@ -28,11 +28,7 @@ void append_number(std::string& out, double value, int decimals, hal::Scalar sca
 }  // namespace
 
 std::string column_title(const RecordField& field) {
-  std::string title = field.name;
-  if (field.unit.empty() || field.unit == "%") return title;
-  title += '_';
-  for (const char c : field.unit) title += c == '/' ? '_' : c;
-  return title;
+  return column_title(field.name, field.unit);
 }
 
 void CsvTable::note(const RecordRows& rows) {

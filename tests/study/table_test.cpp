@@ -69,6 +69,20 @@ TEST_F(TableFile, HoldsWhatWasPutInAndGivesItAsCsv) {
   EXPECT_FALSE(fs::exists(path() + "-wal")) << "one file is left";
 }
 
+TEST_F(TableFile, HasUnitsInTheHeadsOfItsCsvAndNumbersInTheCells) {
+  auto table = Table::open(path());
+  ASSERT_TRUE((*table)->begin({"<study/>", "s.xml", {"velocity", "way", "mixed"}, 2}).ok());
+  RunRow slow = row(0), fast = row(1);
+  slow.settings = {"2.5 cm/s", "1 m", "1 m"};
+  fast.settings = {"10cm/s", "north", "2 cm"};
+  ASSERT_TRUE((*table)->add(std::vector<RunRow>{slow, fast}).ok());
+  ASSERT_TRUE((*table)->finish().ok());
+  ASSERT_TRUE(export_csv(path(), folder_ / "t.csv").ok());
+  EXPECT_THAT(text("t.csv"), testing::StartsWith("run,experiment,seed,velocity_cm_s,way,mixed,state,"));
+  EXPECT_THAT(text("t.csv"), HasSubstr(",1,2.5,1 m,1 m,done,"));
+  EXPECT_THAT(text("t.csv"), HasSubstr(",2,10,north,2 cm,done,"));
+}
+
 TEST_F(TableFile, KnowsItsRunsWhenItIsOpenedAgain) {
   {
     auto table = Table::open(path());
