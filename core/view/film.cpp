@@ -1,6 +1,7 @@
 #include "core/view/film.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <filesystem>
 #include <map>
@@ -21,15 +22,20 @@ struct Name {
   int digits = 0;
 };
 
-/// What ffmpeg is asked for, by the file's ending. The usual players want H.264's pixels in fours, and so an even
-/// number of them along both sides. WebP moves on pages, where they show pictures.
+/// What ffmpeg is asked for, by the file's ending. What finds motion in what cameras see makes films of drawings no
+/// smaller, and threads of the encoder wait for frames. WebP moves on pages, where they show pictures.
 const std::vector<std::string>* encoding_of(const std::string& path) {
   using Words = std::vector<std::string>;
-  static const Words kH264 = {"-vf",      "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white",
-                              "-c:v",     "libx264",
-                              "-preset",  "veryfast",
-                              "-crf",     "18",
-                              "-pix_fmt", "yuv420p",
+  static const Words kH264 = {"-c:v",
+                              "libx264",
+                              "-preset",
+                              "veryfast",
+                              "-crf",
+                              "18",
+                              "-x264-params",
+                              "partitions=i4x4:me=dia:subme=1:rc-lookahead=5",
+                              "-threads",
+                              "1",
                               "-f"};
   const auto in = [](Words words, const char* container) {
     words.emplace_back(container);
@@ -41,6 +47,11 @@ const std::vector<std::string>* encoding_of(const std::string& path) {
       {".webp", {"-c:v", "libwebp_anim", "-lossless", "1", "-loop", "0", "-f", "webp"}}};
   const auto found = kEndings.find(fs::path(path).extension().string());
   return found == kEndings.end() ? nullptr : &found->second;
+}
+
+/// Else its encoder takes pixels: it loses nothing of them.
+bool takes_planes(const std::string& path) {
+  return fs::path(path).extension() != ".webp";
 }
 
 hal::Result<Name> name_of(const std::string& path) {
@@ -101,53 +112,50 @@ std::string Film::picture_path(std::int64_t frame) const {
   return before_ + number + after_;
 }
 
-hal::Status Film::start_encoder(const std::string& pixels) {
-  std::uint32_t size[2];
-  std::memcpy(size, pixels.data(), sizeof size);
-  std::vector<std::string> words = {"-hide_banner",
-                                    "-loglevel",
-                                    "error",
-                                    "-nostats",
-                                    "-y",
-                                    "-f",
-                                    "rawvideo",
-                                    "-pix_fmt",
-                                    "bgr0",
-                                    "-s",
-                                    std::to_string(size[0]) + "x" + std::to_string(size[1]),
-                                    "-r",
-                                    hal::format_number(config_.frames_per_second),
-                                    "-i",
-                                    "pipe:0"};
-  words.insert(words.end(), encoding_of(config_.path)->begin(), encoding_of(config_.path)->end());
+hal::Status Film::start_encoder() {
+  std::array<std::uint32_t, 2> size = {frame_.width(), frame_.height()};
+  if (!takes_planes(config_.path)) std::memcpy(size.data(), pixels_.data(), sizeof size);
+  std::vector<std::string> words = {"-hide_banner", "-loglevel", "error", "-nostats", "-y", "-f", "rawvideo"};
+  const auto add = [&words](const std::vector<std::string>& more) {
+    words.insert(words.end(), more.begin(), more.end());
+  };
+  add({"-pix_fmt", takes_planes(config_.path) ? "yuv420p" : "bgr0"});
+  add({"-s", std::to_string(size[0]) + "x" + std::to_string(size[1])});
+  add({"-r", hal::format_number(config_.frames_per_second), "-i", "pipe:0"});
+  add(*encoding_of(config_.path));
   words.push_back("file:" + file_->part());
   auto encoder = hal::Program::start(hal::find_program("ffmpeg"), words);
   if (!encoder.ok()) return encoder.error();
   encoder_ = std::move(encoder).value();
-  frame_bytes_ = pixels.size();
   return {};
 }
 
 hal::Status Film::add(const Drawing& drawing) {
   constexpr int kSpare_px = 30;  // for a line of the legend that comes later
   if (config_.look.height_px == 0) config_.look.height_px = svg_height_px(drawing, config_.look) + kSpare_px;
-  const auto rendered = render(to_svg(drawing, config_.look), digits_ > 0 ? PictureFormat::Png : PictureFormat::Pixels);
-  if (!rendered.ok()) return rendered.error();
-  const std::string& frame = rendered.value();
-  if (digits_ > 0) {
-    if (const hal::Status written = hal::write_whole_file(picture_path(frames_), "frame", frame); !written.ok())
-      return written;
-  } else {
-    if (encoder_ == nullptr) {
-      if (const hal::Status started = start_encoder(frame); !started.ok()) return started;
-    }
-    if (frame.size() != frame_bytes_) return hal::Error{"a frame has another size than the first one"};
-    constexpr std::size_t kSize_bytes = 8;
-    if (const hal::Status fed = encoder_->feed(std::string_view(frame).substr(kSize_bytes)); !fed.ok())
-      return hal::Error{"film '" + config_.path + "', frame " + std::to_string(frames_) + ": " + fed.error().message};
+  const std::string svg = to_svg(drawing, config_.look);
+  const hal::Status added = digits_ > 0 ? add_picture(svg) : add_to_video(svg);
+  if (added.ok()) ++frames_;
+  return added;
+}
+
+hal::Status Film::add_picture(const std::string& svg) {
+  const auto rendered = render(svg, PictureFormat::Png);
+  return rendered.ok() ? hal::write_whole_file(picture_path(frames_), "frame", rendered.value()) : rendered.error();
+}
+
+hal::Status Film::add_to_video(const std::string& svg) {
+  std::swap(pixels_, before_pixels_);
+  if (const hal::Status rendered = render_pixels(svg, pixels_); !rendered.ok()) return rendered;
+  if (!frame_.show(pixels_, before_pixels_)) return hal::Error{"a frame has another size than the first one"};
+  if (encoder_ == nullptr) {
+    if (const hal::Status started = start_encoder(); !started.ok()) return started;
   }
-  ++frames_;
-  return {};
+  constexpr std::size_t kSize_bytes = 8;
+  const hal::Status fed =
+      encoder_->feed(takes_planes(config_.path) ? frame_.planes() : std::string_view(pixels_).substr(kSize_bytes));
+  if (fed.ok()) return fed;
+  return hal::Error{"film '" + config_.path + "', frame " + std::to_string(frames_) + ": " + fed.error().message};
 }
 
 hal::Status Film::close() {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/view/drawing.hpp"
+#include "core/view/video_frame.hpp"
 #include "hal/output_file.hpp"
 #include "hal/program.hpp"
 #include "hal/result.hpp"
@@ -38,7 +39,9 @@ class Film {
 
  private:
   Film() = default;
-  hal::Status start_encoder(const std::string& pixels);
+  hal::Status add_picture(const std::string& svg);
+  hal::Status add_to_video(const std::string& svg);
+  hal::Status start_encoder();
   std::string picture_path(std::int64_t frame) const;
 
   FilmConfig config_;
@@ -46,7 +49,8 @@ class Film {
   int digits_ = 0;              // of the number; 0: a video
   std::optional<hal::OutputFile> file_;
   std::unique_ptr<hal::Program> encoder_;
-  std::size_t frame_bytes_ = 0;
+  VideoFrame frame_;
+  std::string pixels_, before_pixels_;  // as rendered: of this frame, and of the one before
   std::int64_t frames_ = 0;
 };
 

@@ -23,11 +23,17 @@ hal::Result<Renderer> load_renderer() {
                     std::string(why != nullptr ? why : "unknown reason") + "; .svg needs none"};
 }
 
-hal::Result<std::string> render_by_library(const std::vector<std::string>& svgs, PictureFormat format) {
+/// Into `out`, whose memory is used again.
+hal::Status render_by_library(const std::vector<std::string>& svgs, PictureFormat format, std::string& out) {
   const auto renderer = load_renderer();
   if (!renderer.ok()) return renderer.error();
-  std::string out;
   if (!renderer.value().call(svgs, format, out)) return hal::Error{out};
+  return {};
+}
+
+hal::Result<std::string> render_by_library(const std::vector<std::string>& svgs, PictureFormat format) {
+  std::string out;
+  if (const hal::Status rendered = render_by_library(svgs, format, out); !rendered.ok()) return rendered.error();
   return out;
 }
 
@@ -41,6 +47,10 @@ hal::Status can_render(PictureFormat format) {
 
 hal::Result<std::string> render(const std::string& svg, PictureFormat format) {
   return format == PictureFormat::Svg ? hal::Result<std::string>{svg} : render_by_library({svg}, format);
+}
+
+hal::Status render_pixels(const std::string& svg, std::string& pixels) {
+  return render_by_library({svg}, PictureFormat::Pixels, pixels);
 }
 
 hal::Result<std::string> render_pages(const std::vector<std::string>& svgs) {

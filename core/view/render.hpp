@@ -17,6 +17,8 @@ hal::Status can_render(PictureFormat format);
 /// `svg` as a file of this format; pixels of a PNG are the document's. Error: it cannot be rendered, with the
 /// renderer's words.
 hal::Result<std::string> render(const std::string& svg, PictureFormat format);
+/// Renders `svg` as Pixels into `pixels`; its memory and the renderer's are used again where a thread does so often.
+hal::Status render_pixels(const std::string& svg, std::string& pixels);
 /// Documents as the pages of one PDF, at least one, each as large as it says. Error: as above.
 hal::Result<std::string> render_pages(const std::vector<std::string>& svgs);
 

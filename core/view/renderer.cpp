@@ -49,6 +49,7 @@ void append_pixels(cairo_surface_t* surface, std::string& text) {
   const auto height = static_cast<std::uint32_t>(cairo_image_surface_get_height(surface));
   const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(surface));
   const auto* const data = reinterpret_cast<const char*>(cairo_image_surface_get_data(surface));
+  text.clear();
   text.reserve(8 + std::size_t{4} * width * height);
   text.append(reinterpret_cast<const char*>(&width), sizeof width);
   text.append(reinterpret_cast<const char*>(&height), sizeof height);
@@ -79,48 +80,62 @@ hal::Status draw(const Document& document, cairo_t* context, double scale) {
   return {};
 }
 
-hal::Result<std::string> render_pdf(const std::vector<Document>& documents) {
-  std::string text;
-  const Surface surface(cairo_pdf_surface_create_for_stream(&append, &text, 1.0, 1.0));
+hal::Status render_pdf(const std::vector<Document>& documents, std::string& out) {
+  const Surface surface(cairo_pdf_surface_create_for_stream(&append, &out, 1.0, 1.0));
   const Context context(cairo_create(surface.get()));
   for (const Document& document : documents) {
     cairo_pdf_surface_set_size(surface.get(), kPoints_per_px * document.width_px, kPoints_per_px * document.height_px);
-    if (const hal::Status drawn = draw(document, context.get(), kPoints_per_px); !drawn.ok()) return drawn.error();
+    if (const hal::Status drawn = draw(document, context.get(), kPoints_per_px); !drawn.ok()) return drawn;
     cairo_show_page(context.get());
   }
   cairo_surface_finish(surface.get());
   cairo_status_t status = cairo_status(context.get());
   if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_status(surface.get());
-  if (status != CAIRO_STATUS_SUCCESS) return failed(cairo_status_to_string(status));
-  return text;
+  return status == CAIRO_STATUS_SUCCESS ? hal::Status() : hal::Status(failed(cairo_status_to_string(status)));
 }
 
-hal::Result<std::string> render_image(const Document& document, PictureFormat format) {
-  std::string text;
-  const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(std::ceil(document.width_px)),
-                                                   static_cast<int>(std::ceil(document.height_px))));
-  const Context context(cairo_create(surface.get()));
-  if (const hal::Status drawn = draw(document, context.get(), 1.0); !drawn.ok()) return drawn.error();
-  cairo_status_t status = cairo_status(context.get());
-  if (status == CAIRO_STATUS_SUCCESS && format == PictureFormat::Pixels) {
-    append_pixels(surface.get(), text);
-    return text;
-  }
-  if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_write_to_png_stream(surface.get(), &append, &text);
+Surface image_for(const Document& document) {
+  return Surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(std::ceil(document.width_px)),
+                                            static_cast<int>(std::ceil(document.height_px))));
+}
+
+hal::Status draw_image(const Document& document, cairo_surface_t* surface) {
+  const Context context(cairo_create(surface));
+  if (const hal::Status drawn = draw(document, context.get(), 1.0); !drawn.ok()) return drawn;
+  const cairo_status_t status = cairo_status(context.get());
+  return status == CAIRO_STATUS_SUCCESS ? hal::Status() : hal::Status(failed(cairo_status_to_string(status)));
+}
+
+hal::Status render_png(const Document& document, std::string& out) {
+  const Surface surface = image_for(document);
+  if (hal::Status drawn = draw_image(document, surface.get()); !drawn.ok()) return drawn;
+  cairo_status_t status = cairo_surface_write_to_png_stream(surface.get(), &append, &out);
   cairo_surface_finish(surface.get());
   if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_status(surface.get());
-  if (status != CAIRO_STATUS_SUCCESS) return failed(cairo_status_to_string(status));
-  return text;
+  return status == CAIRO_STATUS_SUCCESS ? hal::Status() : hal::Status(failed(cairo_status_to_string(status)));
 }
 
-hal::Result<std::string> render_here(const std::vector<std::string>& svgs, PictureFormat format) {
+/// On the surface of the frame before, where that has the size: fresh memory costs more than what is drawn on it. The
+/// document covers all of it.
+hal::Status render_frame(const Document& document, std::string& out) {
+  static thread_local Surface kept;
+  if (kept == nullptr || cairo_image_surface_get_width(kept.get()) != static_cast<int>(std::ceil(document.width_px)) ||
+      cairo_image_surface_get_height(kept.get()) != static_cast<int>(std::ceil(document.height_px)))
+    kept = image_for(document);
+  if (hal::Status drawn = draw_image(document, kept.get()); !drawn.ok()) return drawn;
+  append_pixels(kept.get(), out);
+  return {};
+}
+
+hal::Status render_here(const std::vector<std::string>& svgs, PictureFormat format, std::string& out) {
   std::vector<Document> documents;
   for (const std::string& svg : svgs) {
     auto document = read_document(svg);
     if (!document.ok()) return document.error();
     documents.push_back(std::move(document).value());
   }
-  return format == PictureFormat::Pdf ? render_pdf(documents) : render_image(documents.front(), format);
+  if (format == PictureFormat::Pdf) return render_pdf(documents, out);
+  return format == PictureFormat::Pixels ? render_frame(documents.front(), out) : render_png(documents.front(), out);
 }
 
 }  // namespace
@@ -130,9 +145,9 @@ extern "C" __attribute__((visibility("default"))) bool tandem_render(const std::
                                                                      tandem::core::PictureFormat format,
                                                                      std::string& out);
 
-/// `out` is the picture; or, when false is returned, what is wrong.
+/// `out`, empty but for Pixels, becomes the picture; or, when false is returned, what is wrong.
 bool tandem_render(const std::vector<std::string>& svgs, tandem::core::PictureFormat format, std::string& out) {
-  auto rendered = tandem::core::render_here(svgs, format);
-  out = rendered.ok() ? std::move(rendered).value() : rendered.error().message;
+  const tandem::hal::Status rendered = tandem::core::render_here(svgs, format, out);
+  if (!rendered.ok()) out = rendered.error().message;
   return rendered.ok();
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -75,7 +76,7 @@ TEST_F(Films, FeedFramesOfOneSizeToTheEncoderAndPutTheFilmInItsPlace) {
   ASSERT_NE(size, std::string::npos) << called;
   int width = 0, height = 0;
   ASSERT_EQ(std::sscanf(called.c_str() + size, "-s %dx%d", &width, &height), 2) << called;
-  EXPECT_EQ(text_of("a.mp4").size(), std::size_t{5} * 4 * static_cast<std::size_t>(width * height));
+  EXPECT_EQ(text_of("a.mp4").size(), std::size_t{5} * static_cast<std::size_t>(width * height) * 3 / 2);
   EXPECT_NE(called.find("-r 25 "), std::string::npos) << called;
 }
 
@@ -87,6 +88,33 @@ TEST_F(Films, ThatPagesShowAsPicturesAreWebP) {
   ASSERT_TRUE(film->close().ok());
   EXPECT_NE(text_of("bin/called").find("-lossless 1 -loop 0 -f webp file:"), std::string::npos)
       << text_of("bin/called");
+}
+
+/// Pixels of `wide` x `high`, all of one colour.
+std::string pixels_of(std::uint32_t wide, std::uint32_t high, const char (&bgr)[4]) {
+  std::string pixels(8, '\0');
+  std::memcpy(pixels.data(), &wide, 4);
+  std::memcpy(pixels.data() + 4, &high, 4);
+  for (std::uint32_t i = 0; i < wide * high; ++i) pixels.append(bgr, 3).append(1, '\0');
+  return pixels;
+}
+
+TEST(VideoFrame, HasTheColorsOfItsPixelsAndEvenSides) {
+  VideoFrame frame;
+  const std::string white = pixels_of(3, 5, "\xff\xff\xff");
+  ASSERT_TRUE(frame.show(white, {}));
+  EXPECT_EQ((std::pair{frame.width(), frame.height()}), (std::pair{4U, 6U}));
+  EXPECT_EQ(frame.planes(), std::string(24, '\xeb') + std::string(12, '\x80'));
+  // BT.601: pure red is 81, 90, 240; the squares that stay are not touched.
+  std::string red_corner = white;
+  for (const std::size_t pixel : {0U, 1U, 3U, 4U}) red_corner.replace(8 + 4 * pixel, 3, std::string("\0\0\xff", 3));
+  ASSERT_TRUE(frame.show(red_corner, white));
+  std::string expected = std::string(24, '\xeb') + std::string(12, '\x80');
+  for (const std::size_t pixel : {0U, 1U, 4U, 5U}) expected[pixel] = 81;
+  expected[24] = 90;
+  expected[30] = static_cast<char>(240);
+  EXPECT_EQ(frame.planes(), expected);
+  EXPECT_FALSE(frame.show(pixels_of(5, 3, "\xff\xff\xff"), red_corner));
 }
 
 TEST_F(Films, WhoseEncoderDiesSayWithWhichWordsAndLeaveNothing) {
