@@ -112,6 +112,22 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
   return near.empty() ? "" : ". Did you mean '" + near + "'?";
 }
 
+namespace {
+
+/// "random_seed" for "seed": the only candidate that has the word between underscores; empty: none, or several.
+std::string with_part(std::string_view word, const std::vector<std::string>& candidates) {
+  const std::string part = "_" + std::string(word) + "_";
+  std::string found;
+  for (const std::string& candidate : candidates) {
+    if (("_" + candidate + "_").find(part) == std::string::npos) continue;
+    if (!found.empty()) return {};
+    found = candidate;
+  }
+  return found;
+}
+
+}  // namespace
+
 std::string closest(std::string_view word, const std::vector<std::string>& candidates) {
   if (word.size() > 64) return {};
   std::string best;
@@ -124,7 +140,7 @@ std::string closest(std::string_view word, const std::vector<std::string>& candi
       best = candidate;
     }
   }
-  return best;
+  return best.empty() ? with_part(word, candidates) : best;
 }
 
 std::string path_beside(const std::string& path, const std::string& file) {

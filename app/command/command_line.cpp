@@ -9,14 +9,17 @@
 #include <cstring>
 #include <deque>
 #include <exception>
+#include <iterator>
 #include <memory>
 #include <new>
+#include <sstream>
 
 #include "app/build_info.hpp"
 #include "app/command/known_commands.hpp"
 #include "app/command/launcher_commands.hpp"
 #include "app/process/terminal.hpp"
 #include "app/run_options.hpp"
+#include "hal/element.hpp"
 #include "hal/plugin_call.hpp"
 
 namespace tandem::app {
@@ -194,25 +197,43 @@ class Line {
   /// What is wrong with the words, and where they are told.
   std::string complaint(const CLI::ParseError& e) const {
     std::string command = app_.get_name();
-    for (const CLI::App* at = &app_; !at->get_subcommands().empty();) {
+    const CLI::App* at = &app_;
+    while (!at->get_subcommands().empty()) {
       at = at->get_subcommands().front();
       command += " " + at->get_name();
     }
     std::string what = e.what();
+    if (e.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError))
+      what = too_many(*at, what.substr(what.rfind(':') + 2));
     if (const std::size_t at = what.find(" not in range 0.000000 to 1797"); at != std::string::npos)
       what = what.substr(0, at) + " is too small";  // instead of the 309 digits of the largest number
     if (app_.get_subcommands().empty() && !app_.remaining().empty()) what = no_command(app_.remaining().front());
-    return what + "; '" + command + " --help' tells what there is";
+    return what + (what.ends_with('?') ? " '" : "; '") + command + " --help' tells what there is";
   }
 
   int exit(const CLI::Error& e) const { return app_.exit(e); }
 
  private:
-  static std::string no_command(const std::string& word) {
+  /// Of words that the command does not take, the last first as CLI11 lists them: an option before a word.
+  static std::string too_many(const CLI::App& command, const std::string& listed) {
+    std::istringstream in(listed);
+    const std::vector<std::string> words(std::istream_iterator<std::string>(in), {});
+    const auto option = std::ranges::find_if(words, [](const std::string& word) { return word.starts_with('-'); });
+    if (option == words.end()) return "'" + words.back() + "' is a word too many";
+    const std::string name = option->substr(0, option->find('='));
+    std::vector<std::string> known;
+    for (const CLI::Option* one : command.get_options()) {
+      for (const std::string& long_name : one->get_lnames()) known.push_back("--" + long_name);
+    }
+    return "there is no option '" + name + "'" + hal::did_you_mean(name, known);
+  }
+  std::string no_command(const std::string& word) const {
     const auto others = launcher_commands();
     if (std::ranges::find(others, word, &hal::CommandType::name) != others.end())
       return "'" + word + "' is a command of the launcher at the top of a checkout";
-    return "there is no command '" + word + "'";
+    std::vector<std::string> known;
+    for (const Candidate& one : candidates_) known.push_back(one.app->get_name());
+    return "there is no command '" + word + "'" + hal::did_you_mean(word, known);
   }
 
   CLI::App app_;

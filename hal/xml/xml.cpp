@@ -50,12 +50,64 @@ void print(const Element& element, tinyxml2::XMLPrinter& printer) {
   printer.CloseElement();
 }
 
+/// An element that is open.
+struct Open {
+  std::string name;
+  int line = 0;
+};
+
+/// Walks over the tags of a text that is XML but for their order.
+class Tags {
+ public:
+  explicit Tags(const std::string& text) : text_(text) {}
+
+  /// The element that is not closed where it should be, and what stands there instead; line 0: all are.
+  std::pair<Open, std::string> unclosed() {
+    std::vector<Open> open;
+    while ((at_ = text_.find('<', at_)) != std::string::npos) {
+      if (skip("<!--", "-->") || skip("<![CDATA[", "]]>") || skip("<?", "?>") || skip("<!", ">")) continue;
+      const int line = 1 + static_cast<int>(std::count(text_.begin(), text_.begin() + here(at_), '\n'));
+      const bool closes = text_.compare(at_, 2, "</") == 0;
+      const std::string name = next_name(at_ + (closes ? 2 : 1));
+      const bool whole = pass_tag();
+      if (!closes && !whole) open.push_back({name, line});
+      if (!closes) continue;
+      if (open.empty()) return {};
+      if (open.back().name != name) return {open.back(), "line " + std::to_string(line) + " closes <" + name + ">"};
+      open.pop_back();
+    }
+    if (open.empty()) return {};
+    return {open.back(), "the file ends"};
+  }
+
+ private:
+  static std::ptrdiff_t here(std::size_t at) { return static_cast<std::ptrdiff_t>(at); }
+  bool skip(std::string_view begin, std::string_view end) {
+    if (text_.compare(at_, begin.size(), begin) != 0) return false;
+    at_ = std::min(text_.find(end, at_ + begin.size()), text_.size());
+    return true;
+  }
+  std::string next_name(std::size_t from) const {
+    return text_.substr(from, std::min(text_.find_first_of(" \t\r\n/>", from), text_.size()) - from);
+  }
+  /// Goes behind the tag. @returns whether it closes itself.
+  bool pass_tag() {
+    char quote = 0;
+    for (; at_ < text_.size() && (quote != 0 || text_[at_] != '>'); ++at_) {
+      const char c = text_[at_];
+      if (quote == 0 ? c == '"' || c == '\'' : c == quote) quote = quote == 0 ? c : '\0';
+    }
+    return at_ > 0 && at_ < text_.size() && text_[at_ - 1] == '/';
+  }
+
+  const std::string& text_;
+  std::size_t at_ = 0;
+};
+
 std::string why_not_xml(const tinyxml2::XMLDocument& document) {
   switch (document.ErrorID()) {
     case tinyxml2::XML_ERROR_EMPTY_DOCUMENT:
       return "the file is empty";
-    case tinyxml2::XML_ERROR_MISMATCHED_ELEMENT:
-      return "not well-formed XML: a tag is closed that is not the last one opened, or one is never closed";
     case tinyxml2::XML_ERROR_PARSING_ATTRIBUTE:
       return "not well-formed XML: an attribute must be written name=\"value\", and only once";
     case tinyxml2::XML_ERROR_PARSING_COMMENT:
@@ -66,8 +118,6 @@ std::string why_not_xml(const tinyxml2::XMLDocument& document) {
       return "the elements are nested too deeply";
     case tinyxml2::XML_ERROR_PARSING_ELEMENT:
       return "not well-formed XML: a tag is broken or never closed with >";
-    case tinyxml2::XML_ERROR_PARSING:
-      return "not well-formed XML: an element is never closed";
     default:
       return std::string("not well-formed XML: ") + document.ErrorName();
   }
@@ -98,7 +148,12 @@ std::optional<Element> read_xml_text(const std::string& text, const std::string&
   }
   tinyxml2::XMLDocument document;
   if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
-    converter.problem(std::max(document.ErrorLineNum(), 1), why_not_xml(document));
+    const tinyxml2::XMLError error = document.ErrorID();
+    const bool order = error == tinyxml2::XML_ERROR_MISMATCHED_ELEMENT || error == tinyxml2::XML_ERROR_PARSING;
+    if (const auto [open, instead] = order ? Tags(text).unclosed() : std::pair<Open, std::string>(); open.line > 0)
+      converter.problem(open.line, "not well-formed XML: <" + open.name + "> is never closed: " + instead);
+    else
+      converter.problem(std::max(document.ErrorLineNum(), 1), why_not_xml(document));
     return std::nullopt;
   }
   const tinyxml2::XMLElement* root = document.RootElement();

@@ -64,6 +64,13 @@ TEST_F(Commands, OfALibraryThatIsNamedTakeWordsAsTheyDescribeThem) {
               AllOf(HasSubstr("Add numbers."), HasSubstr("--how TEXT:{plain,loud}=plain Needs: --times")));
 }
 
+TEST_F(Commands, AndOptionsThatAreMistypedAreNamedWithWhatWasPerhapsMeant) {
+  EXPECT_THAT(run({"rnu", "x.xml"}).errors, HasSubstr("there is no command 'rnu'. Did you mean 'run'?"));
+  EXPECT_THAT(run({"run", "x.xml", "--sed", "5"}).errors,
+              HasSubstr("there is no option '--sed'. Did you mean '--seed'?"));
+  EXPECT_THAT(run({"run", "x.xml", "5"}).errors, HasSubstr("'5' is a word too many"));
+}
+
 TEST_F(Commands, OfThePluginFoldersAreFoundListedAndCompleted) {
   EXPECT_THAT(run({"test_sum", "1"}).errors, HasSubstr("there is no command 'test_sum'"));
   find_in({"good"});

@@ -115,7 +115,8 @@ hal::Result<Client> Client::connect(const std::string& address, const std::vecto
   const std::size_t slash = address.find('/', scheme.size());
   const std::size_t colon = address.find(':', scheme.size());
   if (!address.starts_with(scheme) || slash == std::string::npos || colon == std::string::npos || colon > slash)
-    return hal::Error{"'" + address + "' is no address of a window"};
+    return hal::Error{"'" + address +
+                      "' is no address of a window: a run with --view prints it, as http://127.0.0.1:8080/?token=…"};
   const std::string host = address.substr(scheme.size(), colon - scheme.size());
   const auto port = static_cast<std::uint16_t>(std::atoi(address.c_str() + colon + 1));
   const auto socket = connect_to(host, port);

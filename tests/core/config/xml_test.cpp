@@ -41,17 +41,19 @@ std::string nested(int depth) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, NotXml,
-    testing::Values(Bad{"empty", "", 1, "the file is empty"}, Bad{"blank", " \n\n ", 1, "the file is empty"},
-                    Bad{"words", "seven robots", 1, "is this an XML file?"},
-                    Bad{"comment_only", "<!-- nothing -->", 1, "there is no element in the file"},
-                    Bad{"mismatched", "<tandem>\n<arena>\n</tandem>", 2,
-                        "a tag is closed that is not the last one opened"},
-                    Bad{"never_closed", "<tandem>\n<arena/>\n", 1, "never closed"},
-                    Bad{"attribute_without_quotes", "<tandem>\n<arena size=4/></tandem>", 2, "name=\"value\""},
-                    Bad{"open_comment", "<tandem>\n<!-- </tandem>", 2, "never closed with -->"},
-                    Bad{"deep", nested(5000), 1, "nested too deeply"},
-                    Bad{"zero_byte", std::string("<tandem>\n\0</tandem>", 19), 2, "zero byte"},
-                    Bad{"other_root", "<html/>", 1, "the root element is <html>"}),
+    testing::Values(
+        Bad{"empty", "", 1, "the file is empty"}, Bad{"blank", " \n\n ", 1, "the file is empty"},
+        Bad{"words", "seven robots", 1, "is this an XML file?"},
+        Bad{"comment_only", "<!-- nothing -->", 1, "there is no element in the file"},
+        Bad{"mismatched", "<tandem>\n<arena>\n</tandem>", 2, "<arena> is never closed: line 3 closes <tandem>"},
+        Bad{"mismatched_behind_what_looks_like_tags", "<tandem>\n<!-- <a> --><b x=\"</c>\"/><f\n y='>'>\n</tandem>", 2,
+            "<f> is never closed: line 4 closes <tandem>"},
+        Bad{"never_closed", "<tandem>\n<arena/>\n", 1, "<tandem> is never closed: the file ends"},
+        Bad{"attribute_without_quotes", "<tandem>\n<arena size=4/></tandem>", 2, "name=\"value\""},
+        Bad{"open_comment", "<tandem>\n<!-- </tandem>", 2, "never closed with -->"},
+        Bad{"deep", nested(5000), 1, "nested too deeply"},
+        Bad{"zero_byte", std::string("<tandem>\n\0</tandem>", 19), 2, "zero byte"},
+        Bad{"other_root", "<html/>", 1, "the root element is <html>"}),
     [](const auto& bad) { return bad.param.name; });
 
 TEST(Xml, ASecondRootIsAnError) {
