@@ -153,6 +153,7 @@ hal::Status print_contents(const ExportOptions& options) {
 }  // namespace
 
 void ExportOptions::describe(hal::CommandLine& line) {
+  line.footer("A file that stands in the place of one that is written is kept as FILE.bak.");
   line.word("record", record, "The record; that of a run that was killed is FILE.part").required().file();
   line.option("--csv", csv, "Write comma-separated values of one table to this file ('-': standard output)").file();
   line.option("--hdf5", hdf5, "Write the tables as data sets to this file, for h5py, Matlab, …").file();
@@ -177,6 +178,10 @@ int export_record(const ExportOptions& options) {
       !apart.ok())
     return complain(kBadInput, apart.error().message);
   hal::Status done;
+  for (const std::string* path : {&options.csv, &options.hdf5, &options.report, &options.dump}) {
+    if (done.ok()) done = keep_old(*path);
+  }
+  if (!done.ok()) return complain(kFailedRunning, done.error().message);
   if (options.csv.empty() && options.hdf5.empty() && options.report.empty() && options.dump.empty())
     done = print_contents(options);
   if (!options.csv.empty()) done = write_csv(options);

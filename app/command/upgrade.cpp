@@ -9,6 +9,7 @@
 #include "app/command/shared_options.hpp"
 #include "app/experiment/plugins.hpp"
 #include "app/experiment/reading.hpp"
+#include "app/outputs/report.hpp"
 #include "app/process/terminal.hpp"
 #include "hal/input_file.hpp"
 #include "hal/output_file.hpp"
@@ -53,7 +54,8 @@ int upgrade(const UpgradeOptions& options) {
     return kDone;
   }
   if (!options.dry_run) {
-    const hal::Status written = hal::write_whole_file(path, "experiment", made.value().text);
+    hal::Status written = keep_old(path);
+    if (written.ok()) written = hal::write_whole_file(path, "experiment", made.value().text);
     if (!written.ok()) return complain(kFailedRunning, written.error().message);
   }
   for (const std::string& change : made.value().changes) fmt::print("{}: {}\n", path, change);
@@ -64,6 +66,7 @@ int upgrade(const UpgradeOptions& options) {
 }  // namespace
 
 constinit const hal::CommandType upgrade_command = hal::command_type<UpgradeOptions, upgrade>(
-    "upgrade", "Rewrite an experiment file in this program's vocabulary; layout and comments stay.");
+    "upgrade",
+    "Rewrite an experiment file in this program's vocabulary; layout and comments stay, the old file as FILE.bak.");
 
 }  // namespace tandem::app

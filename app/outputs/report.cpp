@@ -45,6 +45,16 @@ hal::Status check_apart(const std::vector<NamedFile>& outputs, const std::vector
   return {};
 }
 
+hal::Status keep_old(const std::string& path) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return {};
+  const std::string kept = path + ".bak";
+  fs::copy_file(path, kept, fs::copy_options::overwrite_existing, error);
+  if (error) return hal::Error{"the old '" + path + "' cannot be kept as '" + kept + "': " + error.message()};
+  say("the old '" + path + "' is kept as '" + kept + "'");
+  return {};
+}
+
 void print_table(const std::vector<std::pair<std::string, std::string>>& rows) {
   std::size_t width = 0;
   for (const auto& [name, value] : rows) width = std::max(width, name.size());

@@ -20,6 +20,10 @@ struct NamedFile {
 /// Error: an output would overwrite an input or another output, also by another name. Empty paths and "-" are none.
 hal::Status check_apart(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs);
 
+/// Keeps the file that will be overwritten as FILE.bak, in place of an older one, and says so. Nothing where there is
+/// no ordinary file of that name.
+hal::Status keep_old(const std::string& path);
+
 /// Two columns, aligned.
 void print_table(const std::vector<std::pair<std::string, std::string>>& rows);
 

@@ -174,10 +174,12 @@ TEST_F(Plugins, AreKnownToTheCommandThatUpgradesFiles) {
   folder_.write("there/old.xml", experiment("<plugins library=\"libwarm\"/>", "libwarm"));
   std::string text = text_of(folder_.path() / "there/old.xml");
   text.replace(text.find("<thermometer"), 12, "<epuck_thermometer");
-  folder_.write("there/old.xml", text.erase(text.find(" version=\"1\""), 12));
+  text.erase(text.find(" version=\"1\""), 12);
+  folder_.write("there/old.xml", text);
   Tandem upgrade({"upgrade", "there/old.xml"}, folder_.path());
   ASSERT_EQ(upgrade.wait(), 0) << upgrade.errors();
   EXPECT_THAT(text_of(folder_.path() / "there/old.xml"), HasSubstr("<thermometer offset"));
+  EXPECT_EQ(text_of(folder_.path() / "there/old.xml.bak"), text) << "the old file is kept";
 }
 
 }  // namespace
