@@ -287,6 +287,19 @@ bool fit_record(const std::string& path, const FitOptions& options, std::vector<
   return false;
 }
 
+/// One line for each reason, with the number of robots that it holds for.
+std::string nothing_found(const std::vector<RobotFit>& fits) {
+  std::map<std::string, std::size_t> reasons;
+  for (const RobotFit& robot : fits) {
+    ++reasons["wheels: " + robot.wheels.flaw];
+    ++reasons["proximity: " + robot.proximity.flaw];
+  }
+  std::string text = "nothing was found for any robot";
+  for (const auto& [reason, robots] : reasons)
+    text += fmt::format("\n  {} robot{}: {}", robots, robots == 1 ? "" : "s", reason);
+  return text;
+}
+
 int fit(const FitOptions& options) {
   std::vector<NamedFile> inputs;
   for (const std::string& record : options.records) inputs.push_back({"record", record});
@@ -299,17 +312,17 @@ int fit(const FitOptions& options) {
     if (!fit_record(record, options, fits)) return kBadInput;
   }
   hal::Json json;
-  for (const RobotFit& robot : fits) {
-    if (options.report != "-") print(robot);
-    json["robots"].push_back(to_json(robot));
-  }
   const bool any = std::any_of(fits.begin(), fits.end(),
                                [](const RobotFit& f) { return f.wheels.flaw.empty() || f.proximity.flaw.empty(); });
+  for (const RobotFit& robot : fits) {
+    if (any && options.report != "-") print(robot);
+    json["robots"].push_back(to_json(robot));
+  }
   if (!options.report.empty()) {
     if (const hal::Status done = write_text(options.report, "report", hal::to_text(json)); !done.ok())
       return complain(kBadInput, done.error().message);
   }
-  if (!any) return complain(kBadInput, "nothing was found for any robot");
+  if (!any) return complain(kBadInput, nothing_found(fits));
   if (!options.output.empty()) {
     if (const hal::Status done = write_text(options.output, "fitted parameters", fitted_text(fits, options));
         !done.ok())
