@@ -9,6 +9,7 @@
 #include "app/module/module_table.hpp"
 #include "app/outputs/report.hpp"
 #include "app/pictures/pictures.hpp"
+#include "app/process/progress.hpp"
 #include "app/process/signals.hpp"
 #include "app/process/terminal.hpp"
 #include "core/view/layers/layer_set.hpp"
@@ -167,11 +168,14 @@ int draw_film(const DrawOptions& options) {
   auto made = Pictures::open(request, drawn.look, record.ticks_per_second(), ticks, stop);
   if (!made.ok()) return complain(kBadInput, made.error().message);
   Pictures& pictures = *made.value();
+  std::optional<Progress> progress(std::in_place, ticks, record.ticks_per_second(), "film");
   do {
+    progress->step(pictures.drawn_until());
     if (pictures.trails().wants(record.ticks_done())) pictures.note(record.ticks_done(), record.space());
     drawn.note();
     if (pictures.wants(record.ticks_done())) pictures.draw(record.ticks_done(), drawn.drawing(pictures.trails()));
   } while (!stop.load() && record.next());
+  progress.reset();
   drawn.tell_damage(options.record);
   const bool good = pictures.close();
   if (stop.load()) return interrupted_code();

@@ -257,7 +257,7 @@ void Pictures::Impl::finish() {
 /// Of the drawing that is left when the ticks are over, until it is done.
 void Pictures::Impl::show_progress() {
   if (film == nullptr || ticks == 0) return;
-  Progress progress(ticks, ticks_per_second);
+  Progress progress(ticks, ticks_per_second, "film");
   std::unique_lock lock(mutex);
   while (waiting_bytes > 0) {
     wait_for_change(lock);
@@ -332,6 +332,11 @@ void Pictures::draw(std::int64_t ticks_done, core::Drawing drawing) {
   });
   if (frame && p.film_full && p.ticks == 0)
     say(fmt::format("the film ends here: it has {} frames; --film-every makes them fewer", kMostFrames));
+}
+
+std::int64_t Pictures::drawn_until() const {
+  const std::lock_guard hold(impl_->mutex);
+  return impl_->drawn_until;
 }
 
 bool Pictures::close() {

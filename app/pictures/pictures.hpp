@@ -56,6 +56,8 @@ class Pictures {
   /// Whether `draw` is to be called after so many ticks.
   bool wants(std::int64_t ticks_done) const noexcept;
   void draw(std::int64_t ticks_done, core::Drawing drawing);
+  /// Ticks that were done when the last picture that is ready was handed over.
+  std::int64_t drawn_until() const;
   /// Waits until all is drawn. A failure is reported at once; @returns whether nothing has.
   bool close();
 
