@@ -28,7 +28,12 @@ FootbotManual::FootbotManual(hal::Robot& robot, const Params& params)
       fastest_m_s_(robot.part<hal::DifferentialDrive>().max_speed_m_s),
       silence_ns_(static_cast<hal::TimeNs>(params.silence_s * 1e9)),
       heard_ns_(-silence_ns_),
-      datagrams_(std::make_shared<Datagrams>(params.address, static_cast<std::uint16_t>(params.port))) {}
+      datagrams_(std::make_shared<Datagrams>(params.address, static_cast<std::uint16_t>(params.port))) {
+  const std::string way =
+      (params.address == "0.0.0.0" ? "127.0.0.1" : params.address) + "/" + std::to_string(params.port);
+  robot.log().info(
+      "waits for orders; while it is to drive, again and again: echo \"drive 10 cm/s 0.5 rad/s\" > /dev/udp/" + way);
+}
 
 void FootbotManual::step() {
   std::string_view text;
