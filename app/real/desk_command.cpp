@@ -157,18 +157,29 @@ void print_answer(const Json& answer) {
   if (const std::string note = shown(answer, "note"); !note.empty()) fmt::print("{}\n", note);
 }
 
-int desk(const DeskOptions& options) {
+hal::Result<Json> ask(const DeskOptions& options, Json command) {
   const std::string who = options.who.empty() ? own_name() : options.who;
-  Json command = command_of(options);
   command["who"] = who;
-  std::string where = options.where;
-  const auto answer = where.starts_with(kLcm) ? ask_lcm(where.substr(kLcm.size()), command, who, options.keys)
-                                              : ask_window(where, command);
+  return options.where.starts_with(kLcm) ? ask_lcm(options.where.substr(kLcm.size()), command, who, options.keys)
+                                         : ask_window(options.where, command);
+}
+
+/// That the run has done the command, and how its robots are now.
+void print_done(const DeskOptions& options) {
+  fmt::print("{}{}: the run has done it\n", options.command, options.robot.empty() ? "" : " " + options.robot);
+  const auto after = ask(options, {{"do", "status"}});
+  if (after.ok() && after.value().value("ok", false)) print_answer(after.value());
+}
+
+int desk(const DeskOptions& options) {
+  const auto answer = ask(options, command_of(options));
   if (!answer.ok()) return complain(kFailedRunning, "desk: " + answer.error().message);
   if (options.json) fmt::print("{}\n", hal::to_text(answer.value()));
   if (!answer.value().value("ok", false))
     return complain(kBadInput, "the run refuses: " + shown(answer.value(), "error"));
-  if (!options.json) print_answer(answer.value());
+  if (options.json) return kDone;
+  print_answer(answer.value());
+  if (options.command != "status" && options.command != "preflight") print_done(options);
   return kDone;
 }
 
