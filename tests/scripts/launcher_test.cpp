@@ -100,5 +100,19 @@ TEST_F(BuiltLauncher, FindsItsCheckoutByAnyName) {
   EXPECT_EQ(printed("(cd / && \"$OLDPWD/elsewhere/linked\" run a)"), started());
 }
 
+TEST_F(BuiltLauncher, InstallsWhatFilmsAndRayTracedPicturesCall) {
+  command("apt-get", "echo \"$@\" >>calls");
+  for (const char* const name : {"env", "find", "grep", "id", "mktemp", "rm"})
+    fs::create_symlink(std::string("/usr/bin/") + name, folder_.path() / "bin" / name);
+  const auto called = [this](const std::string& words) {
+    fs::remove(folder_.path() / "calls");
+    (void)printed("PATH=\"$PWD/bin\" /bin/bash ./tandem --yes run a " + words);
+    return text_of(folder_.path() / "calls");
+  };
+  EXPECT_THAT(called("--film b.webp --film-every 2"), HasSubstr("--no-install-recommends ffmpeg\n"));
+  EXPECT_THAT(called("--povray b.png"), HasSubstr("--no-install-recommends povray\n"));
+  EXPECT_EQ(called("--film frames/ --povray b.pov --picture b.png"), "");
+}
+
 }  // namespace
 }  // namespace tandem
