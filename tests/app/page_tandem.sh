@@ -10,7 +10,8 @@ if [[ $name == test_* ]]; then
   "$PAGE_BUILD/tests/$name" --gtest_list_tests "$@" | grep -q '^  ' || fail "no such test: $name $*"
   exit
 fi
-case ${1:-} in
+command=${1:-}
+case $command in
   test)
     tests=$(cd "$PAGE_BUILD" && ctest -N "${@:2}" | sed -n 's/^Total Tests: //p')
     [[ $tests -gt 0 ]] || fail "no such test: $*"
@@ -41,12 +42,12 @@ if [[ " $* " == *" --watch "* ]]; then # for a terminal
   set -- -qefc "$words" /dev/null
   program=script
 fi
-case ${1:-} in
-  bench | emulate | film | replay | robot | run | validate | view) seconds=$PAGE_SECONDS ;; # may take for ever, or nearly
+case $command in
+  bench | emulate | film | python | replay | robot | run | validate | view) seconds=$PAGE_SECONDS ;; # may take for ever, or nearly
   *) seconds=$((PAGE_SECONDS * 10)) ;;
 esac
 code=0
 timeout --preserve-status --kill-after 30 --signal INT "$seconds" "$program" "$@" || code=$?
 [[ $code -ne 130 ]] || code=0                     # ended by Ctrl-C
-[[ $code -ne 4 || ${1:-} != compare ]] || code=0 # it has found a difference
+[[ $code -ne 4 || $command != compare ]] || code=0 # it has found a difference
 exit "$code"
