@@ -5,6 +5,7 @@
 import glob
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -46,6 +47,19 @@ FAINT = """(() => {
 NAMELESS = """[...document.querySelectorAll('button, input, select, summary, canvas:not([aria-hidden]), [role=toolbar], dialog')].filter((e) => e.checkVisibility()
     && !(e.getAttribute('aria-label') || e.title || e.textContent.trim() || e.closest('label')?.textContent.trim())).map((e) => e.outerHTML)"""
 TWICE = "[...document.querySelectorAll('[id]')].map((e) => e.id).filter((id, i, all) => all.indexOf(id) !== i)"
+
+
+def axe_core():
+    """The checks of accessibility of axe-core, as a script; skips the test where npm cannot get them."""
+    npm = shutil.which("npm")
+    if npm is None:
+        raise unittest.SkipTest("npm is missing (apt install npm)")
+    folder = tempfile.mkdtemp(prefix="tandem-axe-")
+    got = subprocess.run([npm, "install", "--no-audit", "--no-fund", "--ignore-scripts", "--prefix", folder, "axe-core@4"], capture_output=True, timeout=120)
+    if got.returncode != 0:
+        raise unittest.SkipTest("npm cannot get axe-core")
+    with open(os.path.join(folder, "node_modules", "axe-core", "axe.min.js"), encoding="utf-8") as file:
+        return file.read()
 
 
 class TestTool(WithBrowser):
@@ -232,6 +246,18 @@ class TestTool(WithBrowser):
             page.press(Keys.ESCAPE)
             page.press("lm")
         page.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+
+    def test_axe_finds_nothing(self):
+        page, axe = self.page, axe_core()
+        page.driver.execute_script(axe)
+        for keys in ("", "nl", "?"):
+            page.press(keys)
+            page.js("document.querySelectorAll('details').forEach((e) => (e.open = true))")
+            page.until("it stands", "document.querySelectorAll('article.robot .port').length > 2 || tandem.selection.ids.size === 0")
+            found = page.driver.execute_async_script("""const done = arguments[0];
+                axe.run(document, { runOnly: ['wcag2a', 'wcag2aa', 'wcag21aa'] }).then(({ violations }) =>
+                  done(violations.map((v) => [v.id, v.nodes.slice(0, 5).map((node) => node.html.slice(0, 160))])));""")
+            self.assertEqual(found, [], f"after '{keys}'")
 
     def test_a_lost_context_is_said_and_the_rest_goes_on(self):
         page = self.page
