@@ -519,7 +519,9 @@ TEST(Window, AViewerSeesAndMayStopAndCommandsNothingElse) {
   window->show(frame_of(3));
   Client viewer = join_as_viewer(*window), operating = join(*window);
   EXPECT_EQ(next_text(viewer, "role")["role"], "viewer");
-  EXPECT_EQ(next_text(operating, "role")["role"], "operator");
+  const Json role = next_text(operating, "role");
+  EXPECT_EQ(role["role"], "operator");
+  EXPECT_TRUE(window->viewers_address().ends_with("token=" + role["look_on"].get<std::string>()));
   int id = 0;
   const auto say = [&](Client& who, Json command) {
     command["id"] = ++id;

@@ -26,9 +26,6 @@ export class Plot {
       if (tick !== null) this.goTo(tick);
     });
     new ResizeObserver(() => this.draw()).observe(this.canvas);
-    world.on('hello', () => {
-      for (const line of this.series.values()) Object.assign(line, { ticks: [], values: [] });
-    });
   }
 
   has(key) {

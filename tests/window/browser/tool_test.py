@@ -285,6 +285,8 @@ class TestMeasures(WithBrowser):
         page.find(".menu button").click()
         self.walk_to(20)
         page.until("its values", "[...tandem.plots.list[0].series.values()][0].ticks.at(-1) === 20")
+        page.js("[...document.querySelectorAll('#controls button')].find((button) => button.textContent === 'scatter').click()")
+        page.until("a press of a paused run", f"{SAID} === '✓ hook foraging: scatter pressed; the run is paused: it may show at the next tick'")
         page.screenshot("window_measures.png")
         self.assertEqual(page.errors(), [])
 
