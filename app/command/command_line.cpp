@@ -205,8 +205,8 @@ class Line {
     std::string what = e.what();
     if (e.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError))
       what = too_many(*at, what.substr(what.rfind(':') + 2));
-    if (const std::size_t at = what.find(" not in range 0.000000 to 1797"); at != std::string::npos)
-      what = what.substr(0, at) + " is too small";  // instead of the 309 digits of the largest number
+    if (const std::size_t found = what.find(" not in range 0.000000 to 1797"); found != std::string::npos)
+      what = what.substr(0, found) + " is too small";  // instead of the 309 digits of the largest number
     if (app_.get_subcommands().empty() && !app_.remaining().empty()) what = no_command(app_.remaining().front());
     return what + (what.ends_with('?') ? " '" : "; '") + command + " --help' tells what there is";
   }

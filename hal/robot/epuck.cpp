@@ -106,7 +106,7 @@ RobotKind make() {
   kind.add(LedsPart{.mounts = ring_leds(), .source = "GCtronic's library; height rounded"});
   kind.add(BodyLedPart{{.mount = {0, 0, 0, 0.03}, .source = "GCtronic's library; height rounded"}});
   kind.add(FrontLedPart{{.mount = on_rim(0, 1, 0, kRadius_m, 0.03), .source = "GCtronic's library; height rounded"}});
-  kind.add(ShellPart{.of = std::string(kName), .source = "chosen after photographs; sizes as of body and wheels"});
+  kind.add(ShellPart{.of = std::string(kName), .source = "drawn from memory; sizes as of body and wheels"});
   return kind;
 }
 

@@ -90,7 +90,7 @@ RobotKind make() {
   kind.add(HeadPart{.turn_rad_s = kPi,
                     .max_tilt_rad = 0.5 * kPi,
                     .source = "tilt: ARGoS 3, from straight down to level; turn: chosen, half a turn a second"});
-  kind.add(ShellPart{.of = std::string(kName), .source = "chosen after photographs; sizes as of body and rotors"});
+  kind.add(ShellPart{.of = std::string(kName), .source = "drawn from memory; sizes as of body and rotors"});
   return kind;
 }
 

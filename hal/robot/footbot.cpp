@@ -107,7 +107,7 @@ RobotKind make() {
                       .source =
                           "aperture: ARGoS 3; chosen: focal length of a common lens (pixels do not depend on it), "
                           "range (an LED is then seen at about one pixel), VGA as small cameras of its time have"});
-  kind.add(ShellPart{.of = std::string(kName), .source = "chosen after photographs; sizes as of body and treels"});
+  kind.add(ShellPart{.of = std::string(kName), .source = "drawn from memory; sizes as of body and treels"});
   return kind;
 }
 

@@ -94,7 +94,7 @@ RobotKind make() {
                     .source =
                         "API: eight in a circle around the buttons (yellow alone), clockwise from the front; below "
                         "left, below right, on top (all colours); places: Enki's pictures, rounded"});
-  kind.add(ShellPart{.of = std::string(kName), .source = "chosen after photographs; outline: Enki"});
+  kind.add(ShellPart{.of = std::string(kName), .source = "drawn from memory; outline: Enki"});
   return kind;
 }
 
