@@ -1,4 +1,4 @@
-// A space that no world steps, in a window.
+// Window of a space that no world steps.
 #include <chrono>
 #include <utility>
 
@@ -23,7 +23,7 @@ class SpaceView final : public core::RunPart {
 
   hal::Status join(core::Run&) override {
     Json hello = hello_message(shown_.experiment, "mixed", 0, shown_.ticks_per_second, {"real"}, {});
-    hello["layers"] = view_.layers_json();
+    hello["layers"] = view_.layers_json(shown_.look().space);
     window_->tell(std::move(hello));
     tell();
     window_->set_commands(
