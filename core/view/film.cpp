@@ -22,7 +22,7 @@ struct Name {
   int digits = 0;
 };
 
-/// What ffmpeg is asked for, by the file's ending. What finds motion in what cameras see makes films of drawings no
+/// What ffmpeg is asked for, by the file's ending. A thorough search for motion makes films of drawings no
 /// smaller, and threads of the encoder wait for frames. WebP moves on pages, where they show pictures.
 const std::vector<std::string>* encoding_of(const std::string& path) {
   using Words = std::vector<std::string>;
