@@ -281,8 +281,9 @@ TEST(Documents, LinkOnlyToWhatExists) {
       ++links;
       const fs::path to = link.str(1).empty() ? file : file.parent_path() / link.str(1);
       EXPECT_TRUE(fs::exists(to)) << file << ": " << link.str(1);
-      if (link[3].matched && to.extension() == ".md")
+      if (link[3].matched && to.extension() == ".md") {
         EXPECT_TRUE(anchors_of(to).contains(link.str(3))) << file << ": " << link.str(1) << link.str(2);
+      }
     }
     for (const std::smatch& folder : matches(text, kFolder)) {
       EXPECT_TRUE(fs::is_directory(kTop / folder.str(1))) << file << ": " << folder.str(1);
