@@ -121,7 +121,7 @@ class TestRun(WithBrowser):
         page.until("the newest tick", "tandem.world.frame.tick === 40")
         self.go_to(25)
         self.assertEqual(self.poses(), there)
-        self.assertTrue(page.pixels() == picture, "not the same picture")
+        self.assertLess(difference(page.pixels(), picture), 1e-5, "not the same picture: more than some pixels on edges differ")
         self.walk_to(45)
         self.assertEqual(page.js("tandem.world.state.latest"), 45)
 
