@@ -281,7 +281,7 @@ class EyebotDriver {
   Goal goal_ = Goal::Obey;
   hal::TimeNs goal_since_ns_ = 0;
   bool reached_ = false;  // the goal, while it is not to obey
-  bool steers_ = false;  // flight is commanded
+  bool steers_ = false;   // flight is commanded
   hal::FlightOrder order_ = hal::FlightOrder::Fly;
   float order_m_s_ = 0.0F;
   bool pending_ = false;

@@ -1,6 +1,6 @@
 // A hub of many robots of all kinds that freezes and is killed while some of them cannot be reached: how soon each has
-// its safe command. TANDEM_MANY_ROBOTS=50 holds it to the bounds of tests/README.md; the small run is generous, since it
-// shares the machine.
+// its safe command. TANDEM_MANY_ROBOTS=50 holds it to the bounds of tests/README.md; the small run is generous, since
+// it shares the machine.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
