@@ -237,9 +237,9 @@ endfunction()
 # tandem_test(NAME hal_params SOURCES … DEPS hal LABELS fast): one GoogleTest program, one ctest entry.
 # WAITS: it mostly waits for real time to pass (label `waits`): many run side by side, but beside none that computes. Each test has
 # fair trials (tests/scenarios/fair_trials.cpp), as many as that may need. FAIR: those alone, of one that computes much itself.
-# COUNTED: GoogleTest's pattern of those that repeat much to judge by counts; checked programs leave them out. APART: tandem_test_program.
+# COUNTED: GoogleTest's pattern of those that repeat much to judge by counts; checked programs leave them out. APART, as for tandem_test_program.
 function(tandem_test)
-  cmake_parse_arguments(arg "WAITS;FAIR;APART" "NAME;TIMEOUT;COUNTED" "SOURCES;DEPS;EXTERNAL;LABELS" ${ARGN})
+  cmake_parse_arguments(arg "WAITS;FAIR" "NAME;TIMEOUT;COUNTED" "SOURCES;DEPS;EXTERNAL;LABELS" ${ARGN})
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 120)
   endif()
@@ -258,11 +258,7 @@ function(tandem_test)
   elseif(TANDEM_SANITIZE)
     math(EXPR arg_TIMEOUT "${arg_TIMEOUT} * 4") # so are checked programs
   endif()
-  set(apart)
-  if(arg_APART)
-    set(apart APART)
-  endif()
-  tandem_test_program(${apart} NAME ${arg_NAME} SOURCES ${arg_SOURCES} DEPS ${arg_DEPS} EXTERNAL ${arg_EXTERNAL})
+  tandem_test_program(${arg_UNPARSED_ARGUMENTS} NAME ${arg_NAME} SOURCES ${arg_SOURCES} DEPS ${arg_DEPS} EXTERNAL ${arg_EXTERNAL})
   set(filter)
   if(arg_COUNTED AND TANDEM_SANITIZE)
     set(filter --gtest_filter=-${arg_COUNTED})

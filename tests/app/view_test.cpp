@@ -342,6 +342,12 @@ TEST(View, ARecordIsPlayedAndLookedInto) {
   EXPECT_EQ(view.wait(kPatience_s), 0);
 }
 
+/// Whether the page gets a message of real robots of which that holds.
+bool told_of_real_robots(Watching& viewer, const std::function<bool(const Json&)>& holds) {
+  const Json message = viewer.until([&](const Json& json) { return json["type"] == "real" && holds(json); });
+  return message.value("type", "") == "real";
+}
+
 TEST(View, RealRobotsAreShownStoppedAndArmed) {
   const Folder folder;
   const scenarios::EmulatedEpuck epuck(folder);
@@ -352,10 +358,7 @@ TEST(View, RealRobotsAreShownStoppedAndArmed) {
   Watching viewer(address_of(run));
   const Json hello = viewer.until([](const Json& json) { return json["type"] == "hello"; });
   EXPECT_EQ(hello["mode"], "mixed");
-  const auto real = [&](const auto& holds) {
-    const Json message = viewer.until([&](const Json& json) { return json["type"] == "real" && holds(json); });
-    return message.value("type", "") == "real";
-  };
+  const auto real = [&](const auto& holds) { return told_of_real_robots(viewer, holds); };
   EXPECT_TRUE(real([](const Json& json) { return json["robots"][0]["driving"] == true; }));
   EXPECT_EQ(viewer.ask(R"({"do":"pause"})")["ok"], true);
   EXPECT_TRUE(eventually([&] { return !epuck.moves(); }, kPatience_s));
@@ -387,10 +390,7 @@ TEST(View, OneRealRobotByItselfIsShownStoppedAndArmed) {
   Watching viewer(address_of(robot));
   const Json hello = viewer.until([](const Json& json) { return json["type"] == "hello"; });
   EXPECT_EQ(hello["mode"], "mixed");
-  const auto real = [&](const auto& holds) {
-    const Json message = viewer.until([&](const Json& json) { return json["type"] == "real" && holds(json); });
-    return message.value("type", "") == "real";
-  };
+  const auto real = [&](const auto& holds) { return told_of_real_robots(viewer, holds); };
   EXPECT_TRUE(real([](const Json& json) { return json["robots"][0]["driving"] == true; }));
   EXPECT_EQ(viewer.ask(R"({"do":"inspect","robots":["ep0"]})")["ok"], true);
   const Json inside = viewer.until([](const Json& json) { return json["type"] == "inspection"; });
