@@ -21,18 +21,19 @@ hal::Result<std::unique_ptr<window::Window>> open_window(const ViewRequest& requ
   options.port = static_cast<std::uint16_t>(request.port);
   options.origins = request.origins;
   options.log = hal::Log([](hal::Severity, std::string_view text) { say(text); });
-  auto window = window::Window::open(options);
-  if (!window.ok()) return window.error();
-  say("view: " + window.value()->address());
-  say("view, to look on and to stop real robots alone: " + window.value()->viewers_address());
+  return window::Window::open(options);
+}
+
+void announce(const window::Window& window, const ViewRequest& request) {
+  say("view: " + window.address());
+  say("view, to look on and to stop real robots alone: " + window.viewers_address());
   if (request.projector) {
-    std::string projector = window.value()->address();
+    std::string projector = window.address();
     projector.replace(projector.find("/?"), 2, "/projector?");
     say("projector: " + projector);
     if (!request.no_browser) (void)open_browser(projector);
   }
-  if (!request.no_browser) (void)open_browser(window.value()->address());
-  return window;
+  if (!request.no_browser) (void)open_browser(window.address());
 }
 
 std::string action_text(const hal::Json& action) {

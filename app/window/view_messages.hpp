@@ -15,8 +15,12 @@ namespace tandem::app {
 
 struct ViewRequest;  // app/command/command.hpp
 
-/// Opens the window that is asked for, tells its address on standard error, and opens a browser where that is wanted.
+/// Opens the window that is asked for.
 hal::Result<std::unique_ptr<window::Window>> open_window(const ViewRequest& request);
+
+/// Prints its addresses on standard error, and opens a browser where that is wanted. To be called when the window takes
+/// commands: an emergency stop before that would be refused.
+void announce(const window::Window& window, const ViewRequest& request);
 
 /// {"type": "hello", …} without layers, controls, kinds and controllers.
 hal::Json hello_message(std::string_view experiment, std::string_view mode, std::uint64_t seed,

@@ -76,6 +76,8 @@ class RecordPlayer final : public core::Watched {
     publish();
   }
 
+  /// Fills the window, and has it take commands.
+  void greet();
   void run(const std::atomic<bool>& stop);
 
   void post(Json command, window::WindowReply reply) override;
@@ -91,7 +93,6 @@ class RecordPlayer final : public core::Watched {
     Json command;
     window::WindowReply reply;
   };
-  void greet();
   void carry_out_posted();
   Json carry_out(const Json& command);
   Json play(const Json& command);
@@ -309,7 +310,6 @@ Clock::time_point RecordPlayer::due() const {
 }
 
 void RecordPlayer::run(const std::atomic<bool>& stop) {
-  greet();
   begin_schedule();
   tell_state();
   while (!stop.load(std::memory_order_relaxed)) {
@@ -416,6 +416,8 @@ int view_record(const RunOptions& options, const std::atomic<bool>& stop) {
                                             ticks_per_second,
                                             {},
                                             &request_stop});
+  player.greet();
+  announce(*window.value(), options.view);
   player.run(stop);
   watch.reset();
   window.value().reset();  // its thread uses the player

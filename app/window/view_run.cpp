@@ -44,6 +44,7 @@ hal::Result<std::unique_ptr<RunView>> RunView::open(const ViewRequest& request, 
   if (!window.ok()) return window.error();
   std::unique_ptr<RunView> view(new RunView(std::move(window).value(), run));
   view->greet();
+  announce(*view->window_, request);
   return view;
 }
 

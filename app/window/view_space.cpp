@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "app/live/viewed_space.hpp"
+#include "app/run_options.hpp"
 #include "app/window/source_view.hpp"
 #include "app/window/view_messages.hpp"
 #include "app/window/view_part.hpp"
@@ -16,8 +17,8 @@ constexpr std::chrono::milliseconds kToldEvery{250};
 
 class SpaceView final : public core::RunPart {
  public:
-  SpaceView(std::unique_ptr<window::Window> window, const ViewedSpace& shown)
-      : shown_(shown), view_(shown.catalog), window_(std::move(window)) {}
+  SpaceView(std::unique_ptr<window::Window> window, const ViewRequest& request, const ViewedSpace& shown)
+      : request_(request), shown_(shown), view_(shown.catalog), window_(std::move(window)) {}
   std::string_view name() const override { return "view"; }
   core::RunTurn turn() const override { return core::RunTurn::View; }
 
@@ -28,6 +29,7 @@ class SpaceView final : public core::RunPart {
     tell();
     window_->set_commands(
         [this](Json command, window::WindowReply reply) { shown_.watched.post(std::move(command), std::move(reply)); });
+    announce(*window_, request_);
     return {};
   }
   bool after_tick(core::Run& run) override {
@@ -55,6 +57,7 @@ class SpaceView final : public core::RunPart {
     window_->tell(shown_.real());
   }
 
+  ViewRequest request_;
   ViewedSpace shown_;
   SourceView view_;
   Clock::time_point told_;
@@ -66,7 +69,7 @@ class SpaceView final : public core::RunPart {
 hal::Result<std::unique_ptr<core::RunPart>> view_space(const ViewRequest& request, const ViewedSpace& shown) {
   auto window = open_window(request);
   if (!window.ok()) return window.error();
-  return std::unique_ptr<core::RunPart>(std::make_unique<SpaceView>(std::move(window).value(), shown));
+  return std::unique_ptr<core::RunPart>(std::make_unique<SpaceView>(std::move(window).value(), request, shown));
 }
 
 }  // namespace tandem::app
