@@ -20,17 +20,44 @@ function(tandem_note folder deps external)
   set_property(GLOBAL APPEND PROPERTY TANDEM_ARCHITECTURE "${folder} : ${deps} : ${external}")
 endfunction()
 
+# tandem_compile_together(<target> APART a.cpp …): its sources are compiled eight at once, which saves most of the time for headers;
+# those of APART one by one, because they have helpers of the same names as others. On boards each is by itself, so that a missing
+# include is noticed.
+function(tandem_compile_together target)
+  cmake_parse_arguments(arg "" "" "APART" ${ARGN})
+  if(TANDEM_BOARD)
+    return()
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON)
+  set_property(SOURCE ${arg_APART} PROPERTY SKIP_UNITY_BUILD_INCLUSION ON)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage) # of a class within a source that another one includes
+  endif()
+endfunction()
+
 # tandem_library(SOURCES a.cpp … DEPS hal core/space … EXTERNAL fmt::fmt … INCLUDES fmt …)
 # One folder = one static library. DEPS are folders, and the only ones whose headers may be included.
 # EXTERNAL are third-party CMake targets or link names. A folder that no tick waits for sets TANDEM_OUTSIDE_THE_TICK for itself
 # and those in it, to tandem_quick_build: it is optimised less, and built in two thirds of the time. HEADERS: what most of its
-# files include and takes long to parse; parsed once for the folder, on top of what all folders share.
+# files include and takes long to parse; parsed once for the folder, on top of what all folders share. QUICK: those of a folder of
+# the tick that no tick waits for. APART: see tandem_compile_together.
 function(tandem_library)
-  cmake_parse_arguments(arg "" "" "SOURCES;DEPS;EXTERNAL;HEADERS" ${ARGN})
+  cmake_parse_arguments(arg "" "" "SOURCES;QUICK;APART;DEPS;EXTERNAL;HEADERS" ${ARGN})
   tandem_folder_of(folder)
   tandem_target_of(target ${folder})
   if(arg_SOURCES)
-    add_library(${target} STATIC ${arg_SOURCES})
+    add_library(${target} STATIC ${arg_SOURCES} ${arg_APART})
+    tandem_compile_together(${target} APART ${arg_APART})
+    if(arg_QUICK)
+      add_library(${target}_quick OBJECT ${arg_QUICK})
+      tandem_compile_together(${target}_quick)
+      target_link_libraries(${target}_quick PRIVATE tandem_flags $<TARGET_PROPERTY:${target},INTERFACE_LINK_LIBRARIES>)
+      target_include_directories(${target}_quick PRIVATE ${PROJECT_SOURCE_DIR})
+      target_compile_definitions(${target}_quick PRIVATE $<TARGET_PROPERTY:${target},INTERFACE_COMPILE_DEFINITIONS>)
+      target_compile_options(${target}_quick PRIVATE ${tandem_quick_build})
+      target_precompile_headers(${target}_quick REUSE_FROM tandem_headers)
+      target_sources(${target} PRIVATE $<TARGET_OBJECTS:${target}_quick>)
+    endif()
     set(scope PUBLIC)
     target_link_libraries(${target} PRIVATE tandem_flags)
     target_compile_options(${target} PRIVATE ${TANDEM_OUTSIDE_THE_TICK})
@@ -163,9 +190,10 @@ endfunction()
 
 # tandem_plugin(NAME epuck_diffusion SOURCES … DEPS hal): one shared object, lib/<name>.so in the build folder.
 function(tandem_plugin)
-  cmake_parse_arguments(arg "" "NAME" "SOURCES;DEPS;EXTERNAL" ${ARGN})
+  cmake_parse_arguments(arg "" "NAME" "SOURCES;APART;DEPS;EXTERNAL" ${ARGN})
   tandem_folder_of(folder)
-  add_library(${arg_NAME} MODULE ${arg_SOURCES})
+  add_library(${arg_NAME} MODULE ${arg_SOURCES} ${arg_APART})
+  tandem_compile_together(${arg_NAME} APART ${arg_APART})
   target_include_directories(${arg_NAME} PRIVATE ${PROJECT_SOURCE_DIR})
   set_target_properties(${arg_NAME} PROPERTIES PREFIX "lib" CXX_VISIBILITY_PRESET hidden
     LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
@@ -207,7 +235,7 @@ function(tandem_test_program)
   endforeach()
   target_precompile_headers(test_${arg_NAME} REUSE_FROM tandem_test_headers)
   if(NOT arg_APART)
-    set_target_properties(test_${arg_NAME} PROPERTIES UNITY_BUILD ON)
+    tandem_compile_together(test_${arg_NAME})
   endif()
   set_target_properties(test_${arg_NAME} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
 endfunction()

@@ -39,12 +39,6 @@ std::string range_text(Range range, const Unit& unit) {
   return "at most " + format_quantity(range.max, unit);
 }
 
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
-}
-
 const Element::Attribute* find_attribute(const Element& element, std::string_view name) {
   for (const Element::Attribute& a : element.attributes) {
     if (a.name == name) return &a;

@@ -11,12 +11,6 @@ constexpr std::array kUnits = {unit::percent, unit::m,   unit::cm,    unit::mm, 
                                unit::rad,     unit::deg, unit::rad_s, unit::deg_s, unit::s,   unit::ms,   unit::us,
                                unit::min,     unit::hz,  unit::kg,    unit::g,     unit::V,   unit::m_s2};
 
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
-}
-
 std::string suffixes_of(Dim dim) {
   std::string list;
   for (const Unit& u : kUnits) {
@@ -28,6 +22,12 @@ std::string suffixes_of(Dim dim) {
 }
 
 }  // namespace
+
+std::string_view trimmed(std::string_view text) noexcept {
+  const auto first = text.find_first_not_of(" \t\r\n");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
+}
 
 std::span<const Unit> all_units() noexcept {
   return kUnits;

@@ -41,6 +41,9 @@ inline constexpr Unit V{Dim::Voltage, "V", 1.0};
 inline constexpr Unit m_s2{Dim::Acceleration, "m/s2", 1.0};
 }  // namespace unit
 
+/// `text` without the spaces, tabs and line ends around it.
+std::string_view trimmed(std::string_view text) noexcept;
+
 /// All units that a suffix may name.
 std::span<const Unit> all_units() noexcept;
 

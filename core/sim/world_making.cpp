@@ -161,10 +161,10 @@ std::string too_wide_for(const SpaceStores& s, const Region& region, double widt
 /// Every body's region; robots and movable objects that lie in none, or are too large for theirs, are problems.
 void assign_regions(const Scenario& scenario, const hal::Catalog& catalog, const Placements& placements,
                     const RegionAssigner& assigner, SpaceStores& s, Problems& problems) {
-  constexpr std::size_t kNamed = 20;
+  constexpr std::size_t kShown = 20;
   std::size_t bad = 0;
   const auto complain = [&](int line, const std::string& who, double x_m, double y_m, const std::string& why) {
-    if (++bad > kNamed) return;
+    if (++bad > kShown) return;
     problems.push_back({scenario.file, line,
                         who + " at (" + hal::format_number(x_m) + ", " + hal::format_number(y_m) + ") " + why, false});
   };
@@ -205,9 +205,9 @@ void assign_regions(const Scenario& scenario, const hal::Catalog& catalog, const
              s.objects[i].x_m, s.objects[i].y_m, why);
   }
   check_upright(scenario, placements, s, problems);
-  if (bad > kNamed)
+  if (bad > kShown)
     problems.push_back({scenario.file, 0,
-                        "... and " + std::to_string(bad - kNamed) + " more bodies in no region or too large for theirs",
+                        "... and " + std::to_string(bad - kShown) + " more bodies in no region or too large for theirs",
                         false});
 }
 

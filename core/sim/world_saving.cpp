@@ -21,8 +21,8 @@ std::uint64_t word_at(const std::byte* bytes, std::size_t word) noexcept {
   return value;
 }
 
-/// A word of memory that may lie beside what was allocated, which the address sanitizer would not let pass.
-[[gnu::no_sanitize_address]] std::uint64_t any_word_at(std::uint64_t address) noexcept {
+/// A word of memory that may lie beside what was allocated, or in what was freed, which sanitizers would not let pass.
+[[gnu::no_sanitize_address, gnu::no_sanitize_thread]] std::uint64_t any_word_at(std::uint64_t address) noexcept {
   std::uint64_t value = 0;
   std::memcpy(&value, reinterpret_cast<const void*>(address), kWord);
   return value;
