@@ -258,8 +258,8 @@ hal::Status check_tag_tracker(const TrackerRequest& request) {
   if (const auto made = detector_of(options); !made.ok()) return made.error();
   for (const TrackedThing& thing : request.things) {
     if (thing.height_m >= camera.value().place.p_WC.z())
-      return hal::Error{"the tag '" + thing.name + "' is " + hal::format_number(thing.height_m) +
-                        " m above the floor, and the camera only " + hal::format_number(camera.value().place.p_WC.z())};
+      return hal::Error{"the tag '" + thing.name + "' is " + hal::rounded(thing.height_m) +
+                        " m above the floor, and the camera only " + hal::rounded(camera.value().place.p_WC.z())};
   }
   return {};
 }
