@@ -68,7 +68,9 @@ core::LiveOptions options_of(const RunPlan& plan) {
     };
   }
   live.speed = options.hold.speed;
-  if (!live.speed && plan.world->scenario().time_mode == core::TimeMode::Realtime) live.speed = 1.0;
+  const core::Scenario& scenario = plan.world->scenario();
+  const bool at_ease = options.watch.watch && !scenario.time_mode_said && !plan.replays();  // for people to follow
+  if (!live.speed && (scenario.time_mode == core::TimeMode::Realtime || at_ease)) live.speed = 1.0;
   live.real_robots = real != nullptr;
   live.stay = options.hold.stay;
   live.can_go_back = options.hold.wanted || options.view.on;
