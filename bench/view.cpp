@@ -33,7 +33,7 @@ using namespace std::chrono_literals;
 using window::Client;
 
 constexpr std::uint32_t kPoses = 1;
-constexpr int kLook_ms = 100;  // between looks whether this is to stop
+constexpr int kWakeEvery_ms = 100;  // between looks whether this is to stop
 
 /// Number of the frame that this is of; 0: of none.
 std::uint32_t pose_frame(const Client::Received& received) {
@@ -117,7 +117,7 @@ class Viewing {
     char buffer[512];
     pollfd ready{program_ == nullptr ? -1 : program_->output(), POLLIN, 0};
     while (program_ != nullptr && !stop.load()) {
-      if (::poll(&ready, 1, kLook_ms) <= 0) continue;
+      if (::poll(&ready, 1, kWakeEvery_ms) <= 0) continue;
       const ssize_t got = ::read(ready.fd, buffer, sizeof buffer);
       if (got <= 0) break;
       text.append(buffer, static_cast<std::size_t>(got));
@@ -148,7 +148,7 @@ hal::Result<Shown> show(const std::string& file, const std::atomic<bool>& stop) 
   if (!client.ok()) return client.error();
   const double latest_s = app::wall_seconds() + 30.0;
   for (;;) {
-    const auto received = client.value().receive(std::chrono::milliseconds(kLook_ms));
+    const auto received = client.value().receive(std::chrono::milliseconds(kWakeEvery_ms));
     const bool closed = received && received->kind == Client::Received::Kind::Close;
     if (closed || stop.load() || app::wall_seconds() > latest_s) return hal::Error{"tandem view shows no frame"};
     if (!received || pose_frame(*received) == 0) continue;

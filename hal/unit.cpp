@@ -57,16 +57,6 @@ std::string format_number(double value) {
   return status == std::errc{} ? std::string(buffer.data(), end) : std::string("?");
 }
 
-std::string rounded(double value, int decimals) {
-  const double scale = std::pow(10.0, decimals);
-  const double shown = std::round(value * scale) / scale;
-  return format_number(std::isfinite(shown) ? shown + 0.0 : value);  // + 0.0: no -0
-}
-
-std::string place_text(double x_m, double y_m) {
-  return "(" + rounded(x_m) + ", " + rounded(y_m) + ")";
-}
-
 namespace {
 
 std::string with_symbol(double number, const Unit& unit) {

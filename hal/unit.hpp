@@ -54,11 +54,6 @@ Result<double> parse_quantity(std::string_view text, const Unit& bare);
 /// The shortest decimal text that reads back as the same double.
 std::string format_number(double value);
 
-/// For people: at most so many decimals.
-std::string rounded(double value, int decimals = 3);
-/// A place for people, to the millimetre: "(1.25, -0.318)".
-std::string place_text(double x_m, double y_m);
-
 /// `value_si` written in `unit` for people, e.g. "5 cm/s": rounded to 12 digits.
 std::string format_quantity(double value_si, const Unit& unit);
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/space/stores.hpp"
+#include "hal/rounded.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::app {
@@ -23,8 +24,8 @@ class Map {
         max_y_m_(s.max_y_m),
         width_m_(s.max_x_m - s.min_x_m),
         height_m_(s.max_y_m - s.min_y_m),
-        step_m_(std::max(width_m_ / static_cast<double>(columns),
-                         height_m_ / kLineHeight / static_cast<double>(lines))) {
+        step_m_(
+            std::max(width_m_ / static_cast<double>(columns), height_m_ / kLineHeight / static_cast<double>(lines))) {
     const auto fitting = [](double wanted, std::size_t most) {
       return std::clamp<std::size_t>(static_cast<std::size_t>(std::lround(wanted)), 1, most);
     };
@@ -38,18 +39,17 @@ class Map {
     const double along_x_m = std::fabs(object.cos_h), along_y_m = std::fabs(object.sin_h);
     const bool round = object.kind == core::Object::Kind::Cylinder;
     // What is thinner than a character has the width of one.
-    const double x_m = std::max(round ? object.radius_m : object.half_x_m,
-                                0.5 * step_m_ * (along_x_m + kLineHeight * along_y_m));
-    const double y_m = std::max(round ? object.radius_m : object.half_y_m,
-                                0.5 * step_m_ * (along_y_m + kLineHeight * along_x_m));
+    const double x_m =
+        std::max(round ? object.radius_m : object.half_x_m, 0.5 * step_m_ * (along_x_m + kLineHeight * along_y_m));
+    const double y_m =
+        std::max(round ? object.radius_m : object.half_y_m, 0.5 * step_m_ * (along_y_m + kLineHeight * along_x_m));
     for (std::size_t line = line_of(object.y_m + reach_m); line <= line_of(object.y_m - reach_m); ++line) {
       for (std::size_t column = column_of(object.x_m - reach_m); column <= column_of(object.x_m + reach_m); ++column) {
         const double dx = min_x_m_ + (static_cast<double>(column) + 0.5) * cell_x_m() - object.x_m;
         const double dy = max_y_m_ - (static_cast<double>(line) + 0.5) * cell_y_m() - object.y_m;
         const double own_x = object.cos_h * dx + object.sin_h * dy, own_y = object.cos_h * dy - object.sin_h * dx;
-        const bool inside =
-            round ? own_x * own_x / (x_m * x_m) + own_y * own_y / (y_m * y_m) <= 1.0
-                  : std::fabs(own_x) <= x_m && std::fabs(own_y) <= y_m;
+        const bool inside = round ? own_x * own_x / (x_m * x_m) + own_y * own_y / (y_m * y_m) <= 1.0
+                                  : std::fabs(own_x) <= x_m && std::fabs(own_y) <= y_m;
         if (inside) put(line, column, object.movable ? 'o' : '#');
       }
     }
@@ -99,9 +99,9 @@ class Map {
       return std::ranges::any_of(lines_, [&](const std::string& l) { return l.find_first_of(signs) != l.npos; });
     };
     std::vector<std::string> all;
-    for (const auto& [signs, text] : {std::pair(">^<v", "> ^ < v  robots"), std::pair("23456789*", "2 … 9 *  several"),
-                                      std::pair("@", "@  real"), std::pair("x", "x  stopped"),
-                                      std::pair("#", "#  fixed"), std::pair("o", "o  movable")}) {
+    for (const auto& [signs, text] :
+         {std::pair(">^<v", "> ^ < v  robots"), std::pair("23456789*", "2 … 9 *  several"), std::pair("@", "@  real"),
+          std::pair("x", "x  stopped"), std::pair("#", "#  fixed"), std::pair("o", "o  movable")}) {
       if (any(signs)) all.emplace_back(text);
     }
     return all;

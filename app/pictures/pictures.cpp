@@ -19,6 +19,7 @@
 #include "core/view/film.hpp"
 #include "core/view/picture.hpp"
 #include "core/view/povray.hpp"
+#include "hal/rounded.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::app {

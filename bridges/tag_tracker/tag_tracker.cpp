@@ -15,6 +15,7 @@
 #include "bridges/tag_tracker/locate.hpp"
 #include "hal/element.hpp"
 #include "hal/monotonic.hpp"
+#include "hal/rounded.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::bridges::tag_tracker {

@@ -215,7 +215,6 @@ void read_framework(Reading& reading, Element& e) {
     if (real_time) start.mode = "realtime";
     const schema::Time time = reading.read(c, start);
     const std::string& mode = time.mode;
-    out.time_mode_said = said || real_time;
     out.time_mode = mode == "realtime" ? TimeMode::Realtime : mode == "lockstep" ? TimeMode::Lockstep : TimeMode::Fast;
     const auto peers = [&](Element& p) {
       const auto read = reading.read<schema::Peers>(p);

@@ -6,6 +6,7 @@
 
 #include "hal/element.hpp"
 #include "hal/json/json_access.hpp"
+#include "hal/rounded.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::core {

@@ -7,6 +7,7 @@
 #include "core/placement/occupancy.hpp"
 #include "core/random/random.hpp"
 #include "hal/angle.hpp"
+#include "hal/rounded.hpp"
 #include "hal/vector.hpp"
 
 namespace tandem::core {

@@ -320,7 +320,6 @@ struct Scenario {
   std::int64_t threads = 0;
   Assignment assignment = Assignment::Static;
   TimeMode time_mode = TimeMode::Fast;
-  bool time_mode_said = false;  ///< by the file
   LockstepConfig lockstep;
   int priority = 0;  ///< SCHED_FIFO of the stepping thread of runs with real robots; 0: none is asked for
 

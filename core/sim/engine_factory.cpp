@@ -7,6 +7,7 @@
 
 #include "core/physics/engine.hpp"
 #include "core/scenario/split.hpp"
+#include "hal/rounded.hpp"
 
 namespace tandem::core {
 namespace {

@@ -18,10 +18,10 @@ std::string with_others(std::string_view who, std::size_t others, std::string_vi
 
 /// One cause of incidents.
 struct IncidentCause {
-  std::string key;                  ///< as `cause_of` gives it
-  std::string who, what;            ///< of the first: "robot 'ep3'" and " left the arena at tick 12"
-  std::vector<std::uint32_t> met;   ///< numbers of all bodies with it, in order
-  std::uint64_t told = 0;           ///< bodies that the log has counted
+  std::string key;                 ///< as `cause_of` gives it
+  std::string who, what;           ///< of the first: "robot 'ep3'" and " left the arena at tick 12"
+  std::vector<std::uint32_t> met;  ///< numbers of all bodies with it, in order
+  std::uint64_t told = 0;          ///< bodies that the log has counted
 
   void remember(auto& archive) { archive(key, who, what, met, told); }
 };
@@ -34,7 +34,7 @@ struct Incidents {
   std::uint64_t commands_not_finite = 0;
   std::uint64_t controllers_thrown = 0;
   std::uint64_t bodies_escaped = 0;
-  std::vector<std::string> first;     ///< the first few causes, each naming a robot, tick, what happened, and to how many
+  std::vector<std::string> first;  ///< the first few causes, each naming a robot, tick, what happened, and to how many
   std::vector<IncidentCause> causes;  ///< of `first`
   std::uint64_t latest = 0;           ///< of these, that happened last
 

@@ -7,6 +7,7 @@
 #include "core/sim/world_impl.hpp"
 #include "core/space/fingerprint.hpp"
 #include "hal/check.hpp"
+#include "hal/rounded.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::core {

@@ -6,6 +6,7 @@
 #include "core/sim/engine_factory.hpp"
 #include "core/space/attitude.hpp"
 #include "hal/angle.hpp"
+#include "hal/rounded.hpp"
 
 namespace tandem::core {
 namespace {

@@ -13,6 +13,7 @@
 #include "core/sim/settings.hpp"
 #include "core/sim/world_impl.hpp"
 #include "core/space/attitude.hpp"
+#include "hal/rounded.hpp"
 #include "hal/vector.hpp"
 
 namespace tandem::core {

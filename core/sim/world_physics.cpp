@@ -5,6 +5,7 @@
 #include "core/sim/world_impl.hpp"
 #include "core/space/attitude.hpp"
 #include "hal/device/ring_sensors.hpp"
+#include "hal/rounded.hpp"
 
 namespace tandem::core {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "hal/angle.hpp"
 #include "hal/device/body_sensors.hpp"
+#include "hal/rounded.hpp"
 #include "hal/unit.hpp"
 #include "mixed_reality/desk/machine.hpp"
 #include "mixed_reality/fence/intrusion.hpp"

@@ -8,6 +8,7 @@
 #include "core/space/stores.hpp"
 #include "hal/device/steppers.hpp"
 #include "hal/device/turret.hpp"
+#include "hal/rounded.hpp"
 #include "hal/unit.hpp"
 #include "mixed_reality/tracking/odometry.hpp"
 

@@ -5,6 +5,8 @@
 #include <rapidcheck.h>
 #include <set>
 
+#include "hal/rounded.hpp"
+
 namespace tandem::hal {
 namespace {
 

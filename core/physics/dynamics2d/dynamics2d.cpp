@@ -16,6 +16,7 @@
 #include "core/physics/world_memory.hpp"
 #include "core/space/object_index.hpp"
 #include "hal/check.hpp"
+#include "hal/rounded.hpp"
 
 namespace tandem::core {
 namespace {

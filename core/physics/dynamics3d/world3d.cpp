@@ -7,6 +7,7 @@
 
 #include "core/physics/wheels.hpp"
 #include "core/space/attitude.hpp"
+#include "hal/rounded.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::core {

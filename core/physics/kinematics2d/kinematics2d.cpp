@@ -9,6 +9,7 @@
 #include "core/physics/crowd_passes.hpp"
 #include "core/physics/walls.hpp"
 #include "core/physics/wheels.hpp"
+#include "hal/rounded.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::core {
