@@ -151,6 +151,10 @@ int run(const BenchOptions& options) {
       *std::find_if(kBenches.begin(), kBenches.end(), [&](const Bench& b) { return b.name == options.name; });
   try {
     const hal::Result<int> code = bench.run(call);
+    if (const int interrupted = app::interrupted_code(); interrupted != 0) {
+      app::say("interrupted");
+      return interrupted;
+    }
     return code.ok() ? code.value() : refuse(app::kFailedRunning, code.error().message);
   } catch (const std::exception& e) {
     return refuse(app::kFailedRunning, e.what());
@@ -209,5 +213,4 @@ void BenchOptions::describe(hal::CommandLine& line) {
 }  // namespace tandem::bench
 
 constinit const tandem::hal::CommandType tandem::app::bench_command =
-    tandem::hal::command_type<tandem::bench::BenchOptions, tandem::bench::run>("bench",
-                                                                               tandem::app::module_summary("bench"));
+    tandem::app::module_command<tandem::bench::BenchOptions, tandem::bench::run>("bench");
