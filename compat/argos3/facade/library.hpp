@@ -1,0 +1,25 @@
+// Libraries of users, built against the facade: their classes, by library.
+#pragma once
+#include <argos3/core/utility/plugins/factory.h>
+#include <string_view>
+#include <vector>
+
+#include "hal/catalog.hpp"
+
+namespace tandem::compat::argos3 {
+
+/// The facade as a surface of plug-ins: what a user's library names in its note, so that the module is loaded before
+/// it. Raise kNumber with any change of the classes in include/argos3 that users' libraries compile in.
+struct Facade {
+  static constexpr std::string_view kCategory = "argos3";
+  static constexpr std::uint32_t kNumber = 1;
+  std::string_view name, summary;
+};
+
+/// What the library that holds `address` has registered, in the order of its macros.
+std::vector<const argos::tandem_detail::SRegistration*> registrations_of(const void* address);
+
+/// Adds all that this library has registered to the catalog. @throws CARGoSException: one label twice, say
+void register_library(const void* address, hal::Registrar& registrar);
+
+}  // namespace tandem::compat::argos3

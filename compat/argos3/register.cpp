@@ -1,0 +1,13 @@
+#include "compat/argos3/register.hpp"
+
+#include "compat/argos3/facade/library.hpp"
+
+namespace tandem::app {
+
+void register_argos3(hal::Registrar& registrar) {
+  static constexpr compat::argos3::Facade kFacade = {"argos3",
+                                                     "ARGoS 3's classes for sources that were written for it"};
+  registrar.add(kFacade);
+}
+
+}  // namespace tandem::app
