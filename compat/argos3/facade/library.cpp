@@ -1,5 +1,6 @@
 #include "compat/argos3/facade/library.hpp"
 
+#include <algorithm>
 #include <dlfcn.h>
 #include <mutex>
 
@@ -10,6 +11,10 @@ using argos::tandem_detail::SRegistration;
 
 std::mutex mutex;
 SRegistration* first = nullptr;  // the last that was registered comes first
+std::vector<Closed>& closed() {
+  static std::vector<Closed>* const all = new std::vector<Closed>;  // outlives static objects of libraries
+  return *all;
+}
 
 /// Where the library that holds `address` begins.
 const void* library_of(const void* address) noexcept {
@@ -29,14 +34,36 @@ std::vector<const SRegistration*> registrations_of(const void* address) {
   return found;
 }
 
+void on_closed(Closed told) {
+  const std::lock_guard lock(mutex);
+  if (std::find(closed().begin(), closed().end(), told) == closed().end()) closed().push_back(told);
+}
+
 }  // namespace tandem::compat::argos3
 
 namespace argos::tandem_detail {
 
+namespace compat = tandem::compat::argos3;
+
 void Register(SRegistration& registration) {
-  const std::lock_guard lock(tandem::compat::argos3::mutex);
-  registration.Next = tandem::compat::argos3::first;
-  tandem::compat::argos3::first = &registration;
+  const std::lock_guard lock(compat::mutex);
+  registration.Next = compat::first;
+  compat::first = &registration;
+}
+
+void Unregister(SRegistration& registration) {
+  std::vector<compat::Closed> told;
+  {
+    const std::lock_guard lock(compat::mutex);
+    for (SRegistration** at = &compat::first; *at != nullptr; at = &(*at)->Next) {
+      if (*at == &registration) {
+        *at = registration.Next;
+        break;
+      }
+    }
+    told = compat::closed();
+  }
+  for (const compat::Closed one : told) one(registration);
 }
 
 }  // namespace argos::tandem_detail

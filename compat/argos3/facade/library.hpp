@@ -19,7 +19,11 @@ struct Facade {
 /// What the library that holds `address` has registered, in the order of its macros.
 std::vector<const argos::tandem_detail::SRegistration*> registrations_of(const void* address);
 
-/// Adds all that this library has registered to the catalog. @throws CARGoSException: one label twice, say
+/// Told whenever the library of a class is closed. Once for each `told`.
+using Closed = void (*)(const argos::tandem_detail::SRegistration& registration) noexcept;
+void on_closed(Closed told);
+
+/// Adds all that this library has registered to the catalog (compat/argos3/register.cpp).
 void register_library(const void* address, hal::Registrar& registrar);
 
 }  // namespace tandem::compat::argos3

@@ -46,7 +46,7 @@ class CCI_Controller : public CBaseConfigurableResource {
   bool HasActuator(const std::string& name) const { return m_mapActuators.count(name) != 0; }
   bool HasSensor(const std::string& name) const { return m_mapSensors.count(name) != 0; }
   CCI_Actuator::TMap& GetAllActuators() { return m_mapActuators; }
-  CCI_Sensor::TMap& GetAllSensors() { return m_mapSensors; }
+  CCI_Sensor::TMap& GetAllSensors();
   void AddActuator(const std::string& name, CCI_Actuator* actuator) { m_mapActuators[name] = actuator; }
   void AddSensor(const std::string& name, CCI_Sensor* sensor) { m_mapSensors[name] = sensor; }
 

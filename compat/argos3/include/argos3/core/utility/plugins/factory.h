@@ -21,8 +21,12 @@ struct SRegistration {
   SRegistration* Next;
 };
 
-/// Keeps it for the library that is being loaded, or for the program itself.
+/// From when its library is loaded until it is closed.
 void Register(SRegistration& registration);
+void Unregister(SRegistration& registration);
+/// Brings what makes a plug-in of a library: it lies in libtandem_argos3_plugin.a, which goes with every library of
+/// ARGoS' names. An undefined one says that the library was not linked with argos3core_simulator.
+void LinkPlugin();
 
 }  // namespace tandem_detail
 }  // namespace argos
@@ -37,21 +41,14 @@ void Register(SRegistration& registration);
     return static_cast<BASE*>(new CLASSNAME);                                                                     \
   }                                                                                                               \
   struct TANDEM_ARGOS3_NAME(STandemRegistration, NUMBER) {                                                        \
-    TANDEM_ARGOS3_NAME(STandemRegistration, NUMBER)() {                                                           \
-      static ::argos::tandem_detail::SRegistration registration = {                                               \
-          KIND, LABEL, #CLASSNAME, &TANDEM_ARGOS3_NAME(TandemCreate, NUMBER), nullptr};                           \
-      ::argos::tandem_detail::Register(registration);                                                             \
+    ::argos::tandem_detail::SRegistration Registration;                                                           \
+    TANDEM_ARGOS3_NAME(STandemRegistration, NUMBER)                                                               \
+    () : Registration{KIND, LABEL, #CLASSNAME, &TANDEM_ARGOS3_NAME(TandemCreate, NUMBER), nullptr} {              \
+      ::argos::tandem_detail::Register(Registration);                                                             \
       ::argos::tandem_detail::LinkPlugin();                                                                       \
     }                                                                                                             \
+    TANDEM_ARGOS3_NAME(~STandemRegistration, NUMBER)() { ::argos::tandem_detail::Unregister(Registration); }      \
   } TANDEM_ARGOS3_NAME(g_tandemRegistration, NUMBER);                                                             \
   }
-
-namespace argos {
-namespace tandem_detail {
-/// Brings what makes a plug-in of a library: it lies in libtandem_argos3_plugin.a, which goes with every library of
-/// ARGoS' names. An undefined one says that the library was not linked with argos3core_simulator.
-void LinkPlugin();
-}  // namespace tandem_detail
-}  // namespace argos
 
 #endif
