@@ -13,7 +13,7 @@ foreach(module dynamics live pictures real window study lab argos3)
   endif()
 endforeach()
 if(TARGET tandem_module_argos3)
-  add_dependencies(tandem_module_argos3 tandem_argos3_plugin) # users' libraries are built with it
+  add_dependencies(tandem_module_argos3 tandem_argos3_plugin argos_diffusion) # users' libraries are built with it
 endif()
 get_property(modules GLOBAL PROPERTY TANDEM_MODULES)
 get_property(plugins GLOBAL PROPERTY TANDEM_PLUGINS)

@@ -33,7 +33,12 @@ class CVector2 {
     m_fY = y;
   }
   void Set(const std::array<Real, 2>& xy) { Set(xy[0], xy[1]); }
-  void FromPolarCoordinates(Real length, const CRadians& angle) { Set(length * Cos(angle), length * Sin(angle)); }
+  void FromPolarCoordinates(Real length, const CRadians& angle) {
+    if (length == 0.0)  // as most readings of sensors are
+      Set(0.0, 0.0);
+    else
+      Set(length * Cos(angle), length * Sin(angle));
+  }
 
   Real SquareLength() const { return m_fX * m_fX + m_fY * m_fY; }
   Real Length() const { return std::sqrt(SquareLength()); }
