@@ -183,7 +183,12 @@ void ElementReader::visit(const Param& param) {
     return;
   }
   if (words != nullptr && param.name == kOtherParams) return take_others(*words);
-  if (words != nullptr && param.name == kWholeElement) return take_whole(*words);
+  if (words != nullptr && param.name == kWholeElement) {
+    write_xml(element_, *words);
+    for (const Element::Attribute& a : element_.attributes) known_.push_back(a.name);
+    for (const Element& child : element_.children) known_children_.push_back(child.name);
+    return;
+  }
   known_.emplace_back(param.name);
   const std::string* const text = element_.attribute(param.name);
   if (text == nullptr) return;
@@ -238,12 +243,6 @@ void ElementReader::take_others(std::string& value) {
     value += a.name + "\n" + in_a_line + "\n";
     known_.push_back(a.name);
   }
-}
-
-void ElementReader::take_whole(std::string& xml) {
-  write_xml(element_, xml);
-  for (const Element::Attribute& a : element_.attributes) known_.push_back(a.name);
-  for (const Element& child : element_.children) known_children_.push_back(child.name);
 }
 
 void ElementReader::read(const Param& param, const std::string& text, const Param::Choice& choice) {

@@ -85,7 +85,6 @@ class ElementReader final : public ParamVisitor {
   void read_group(std::string_view name, const Param::Group& group);
   void read_list(std::string_view name, ParamList& list);
   void take_others(std::string& value);
-  void take_whole(std::string& xml);
   void problem(std::string_view attribute, std::string message);
   /// Whether `value` lies in `range`; says so when not.
   bool in_range(std::string_view name, const std::string& text, double value, Range range, const Unit& unit);

@@ -1,6 +1,5 @@
 #include "hal/random.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "hal/elementary.hpp"
@@ -45,18 +44,6 @@ double Random::normal(double mean, double deviation) noexcept {
 
 double Random::exponential(double mean) noexcept {
   return -mean * log(1.0 - uniform());
-}
-
-// [Knuth, The Art of Computer Programming 2, 3.4.1], by parts that exp(-mean) can tell from 0.
-std::int64_t Random::poisson(double mean) noexcept {
-  std::int64_t events = 0;
-  while (mean > 0.0) {
-    const double part = std::min(mean, 30.0);
-    mean -= part;
-    const double least = exp(-part);
-    for (double product = uniform(); product > least; product *= uniform()) ++events;
-  }
-  return events;
 }
 
 }  // namespace tandem::hal

@@ -35,8 +35,6 @@ class Random {
   double normal(double mean = 0.0, double deviation = 1.0) noexcept;
   /// Of the exponential distribution: the time to the next event of those that come every `mean` on average.
   double exponential(double mean = 1.0) noexcept;
-  /// Of the Poisson distribution: how many events there are where `mean` are expected; takes time in proportion to that.
-  std::int64_t poisson(double mean) noexcept;
   /// Puts the values into a random order, all orders equally likely.
   template <class Values>
   void shuffle(Values&& values) noexcept {

@@ -4,6 +4,7 @@
 
 #include "controllers/lua_controller/devices.hpp"
 #include "hal/elementary.hpp"
+#include "hal/poisson.hpp"
 
 namespace tandem::controllers::lua {
 namespace {
@@ -156,7 +157,7 @@ int poisson(lua_State* L) {
   const double mean = luaL_checknumber(L, 1);
   luaL_argcheck(L, mean >= 0.0 && mean <= 1e6, 1, "a mean is from 0 to 1e6");
   Interpreter::of(L).spend(L, static_cast<std::int64_t>(mean));
-  lua_pushinteger(L, random_of(L).poisson(mean));
+  lua_pushinteger(L, hal::poisson(random_of(L), mean));
   return 1;
 }
 

@@ -1,5 +1,5 @@
 // CRandom, on hal::Random.
-#include "hal/random.hpp"
+#include "hal/poisson.hpp"
 
 #include <argos3/core/utility/math/rng.h>
 #include <cmath>
@@ -133,7 +133,7 @@ Real CRandom::CRNG::Exponential(Real mean) {
 }
 
 UInt32 CRandom::CRNG::Poisson(Real mean) {
-  return static_cast<UInt32>(m_psGenerator->random.poisson(mean));
+  return static_cast<UInt32>(tandem::hal::poisson(m_psGenerator->random, mean));
 }
 
 Real CRandom::CRNG::Gaussian(Real deviation, Real mean) {

@@ -1,10 +1,4 @@
 // ARGoS' types: geometry by closed forms, texts, nodes, bytes, random numbers.
-#include <cmath>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <map>
-#include <sstream>
-
 #include <argos3/core/utility/configuration/argos_configuration.h>
 #include <argos3/core/utility/datatypes/any.h>
 #include <argos3/core/utility/datatypes/byte_array.h>
@@ -18,9 +12,14 @@
 #include <argos3/core/utility/math/ray3.h>
 #include <argos3/core/utility/math/rng.h>
 #include <argos3/core/utility/string_utilities.h>
+#include <cmath>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <map>
+#include <sstream>
 
-#include "compat/argos3/facade/context.hpp"
 #include "compat/argos3/facade/configuration.hpp"
+#include "compat/argos3/facade/context.hpp"
 
 namespace argos {
 namespace {
@@ -143,9 +142,10 @@ TEST(ArgosQuaternions, LeadFromOneVectorToAnother) {
   }
   CRadians z, y, x;
   CQuaternion().FromEulerAngles(CRadians(0.4), CRadians::PI_OVER_TWO, CRadians(0.1)).ToEulerAngles(z, y, x);
-  expect_near(CVector3(1, 2, 3).Rotate(CQuaternion().FromEulerAngles(z, y, x)),
-              CVector3(1, 2, 3).Rotate(CQuaternion().FromEulerAngles(CRadians(0.4), CRadians::PI_OVER_TWO, CRadians(0.1))),
-              1e-6);
+  expect_near(
+      CVector3(1, 2, 3).Rotate(CQuaternion().FromEulerAngles(z, y, x)),
+      CVector3(1, 2, 3).Rotate(CQuaternion().FromEulerAngles(CRadians(0.4), CRadians::PI_OVER_TWO, CRadians(0.1))),
+      1e-6);
 }
 
 TEST(ArgosRays, MeetWhereTheyMeet) {
@@ -166,7 +166,8 @@ TEST(ArgosMatrices, HaveDeterminants) {
   const Real all[] = {2, 1, 0, 1, 3, 1, 0, 1, 4};
   EXPECT_NEAR(CSquareMatrix<3>(all).GetDeterminant(), 18.0, kSmall);
   EXPECT_EQ(CSquareMatrix<3>(all).GetTransposed(), CSquareMatrix<3>(all));
-  EXPECT_NEAR((static_cast<CMatrix<1, 2>>(CVector2(3, 4)) * static_cast<CMatrix<2, 1>>(CVector2(3, 4)))(0), 25.0, kSmall);
+  EXPECT_NEAR((static_cast<CMatrix<1, 2>>(CVector2(3, 4)) * static_cast<CMatrix<2, 1>>(CVector2(3, 4)))(0), 25.0,
+              kSmall);
 }
 
 TEST(ArgosTexts, AreConverted) {
@@ -356,7 +357,10 @@ TEST(ArgosChance, BeginsAnewAndHasCategories) {
   a->Reset();
   EXPECT_EQ(a->Uniform(unit), first);
   one.set_seed(2);
-  EXPECT_EQ(a->Uniform(unit), [&] { c->Reset(); return c->Uniform(unit); }());
+  EXPECT_EQ(a->Uniform(unit), [&] {
+    c->Reset();
+    return c->Uniform(unit);
+  }());
   EXPECT_TRUE(CRandom::CreateCategory("mine", 5));
   EXPECT_FALSE(CRandom::CreateCategory("mine", 5));
   EXPECT_EQ(CRandom::GetSeedOf("mine"), 5U);

@@ -76,7 +76,8 @@ TEST(ArgosLibraries, DriveAnEpuck) {
   const Folder folder;
   const EmulatedEpuck epuck(folder);
   folder.write("e.xml", R"(<tandem><framework><experiment length="0" ticks_per_second="10"/></framework><controllers>
-<epuck_walker id="c" library=")" + kLibrary + R"("><actuators><differential_steering/></actuators><sensors><epuck_proximity/>
+<epuck_walker id="c" library=")" +
+                            kLibrary + R"("><actuators><differential_steering/></actuators><sensors><epuck_proximity/>
 </sensors><params velocity="5"/></epuck_walker></controllers><arena size="4,4,1"><e-puck id="ep0">
 <body position="0,0,0"/><controller config="c"/><bridge link="serial:ep0"/></e-puck></arena></tandem>)");
   Tandem run({"robot", "e.xml", "--seconds", "2"}, folder.path());
@@ -90,10 +91,12 @@ TEST(ArgosLibraries, DriveAFootbot) {
   const EmulatedFootbot footbot(folder);
   ASSERT_TRUE(footbot.ready());
   folder.write("e.xml", R"(<tandem><framework><experiment length="0" ticks_per_second="10"/></framework><controllers>
-<footbot_walker id="c" library=")" + kLibrary + R"("><actuators><differential_steering/></actuators><sensors>
+<footbot_walker id="c" library=")" +
+                            kLibrary + R"("><actuators><differential_steering/></actuators><sensors>
 <footbot_proximity/></sensors><params velocity="5"/></footbot_walker></controllers><arena size="4,4,1">
 <foot-bot id="fb0"><body position="0,0,0"/><controller config="c"/><bridge link="slcan:fb0@1000000" map=")" +
-                            std::string(test::kSourceDir) + R"(/configs/footbot_map.xml"/></foot-bot></arena></tandem>)");
+                            std::string(test::kSourceDir) +
+                            R"(/configs/footbot_map.xml"/></foot-bot></arena></tandem>)");
   Tandem run({"robot", "e.xml", "--seconds", "2"}, folder.path());
   EXPECT_EQ(run.wait(60), 0) << run.errors();
   EXPECT_TRUE(footbot.has_moved());
@@ -103,7 +106,8 @@ TEST(ArgosLibraries, AreStoppedByNameWhenTheyThrowOnARobot) {
   const Folder folder;
   const EmulatedEpuck epuck(folder);
   folder.write("e.xml", R"(<tandem><framework><experiment length="0" ticks_per_second="10"/></framework><controllers>
-<thrower id="c" library=")" + kLibrary + R"("><actuators><differential_steering/></actuators>
+<thrower id="c" library=")" +
+                            kLibrary + R"("><actuators><differential_steering/></actuators>
 <params when="step" what="argos"/></thrower></controllers><arena size="4,4,1"><e-puck id="ep0">
 <body position="0,0,0"/><controller config="c"/><bridge link="serial:ep0"/></e-puck></arena></tandem>)");
   Tandem run({"robot", "e.xml"}, folder.path());

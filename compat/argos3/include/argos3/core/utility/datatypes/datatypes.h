@@ -1,9 +1,20 @@
 // Number types of ARGoS.
 #ifndef TANDEM_ARGOS3_DATATYPES_H
 #define TANDEM_ARGOS3_DATATYPES_H
+// Users rely on what ARGoS' headers include.
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
+#include <cstring>
 #include <iostream>
+#include <limits>
+#include <map>
+#include <sstream>
+#include <string>
+#include <string.h>
+#include <unistd.h>
+#include <vector>
 
 #include <argos3/core/config.h>
 
