@@ -64,7 +64,7 @@ inline double yaw_of(const Positioning& at) noexcept {
   const auto& [w, x, y, z] = at.q_WB;
   return atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z));
 }
-/// A place that is told relative to the robot (x forward, y left), in the world.
+/// A place relative to the robot (x forward, y left), in the world.
 inline std::array<double, 3> from_body(const Positioning& at, const std::array<double, 3>& p) noexcept {
   const double yaw = yaw_of(at), c = cos(yaw), s = sin(yaw);
   return {at.p_WB[0] + p[0] * c - p[1] * s, at.p_WB[1] + p[0] * s + p[1] * c, at.p_WB[2] + p[2]};

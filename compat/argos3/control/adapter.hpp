@@ -16,9 +16,9 @@ class Adapter final : public hal::Controller {
     void describe(hal::ParamVisitor& v);
   };
 
-  /// Calls Init, or Reset of a controller that loop functions hold for this robot. @throws what that throws
+  /// Calls Init, or Reset of a controller that loop functions hold for this robot. @throws its exceptions
   Adapter(hal::Robot& robot, const Params& params);
-  /// Calls Destroy, unless loop functions hold the controller; what it throws goes to the log.
+  /// Calls Destroy, unless loop functions hold the controller; an exception of it goes to the log.
   ~Adapter() override;
   Adapter(const Adapter&) = delete;
   Adapter& operator=(const Adapter&) = delete;

@@ -30,11 +30,11 @@ struct Fitting {
   }
 };
 
-/// What our side does with a device.
+/// A device as our side uses it.
 class Device {
  public:
   virtual ~Device() = default;
-  /// Of this port it reads, or writes it. Again when the experiment begins anew.
+  /// Of this port it reads, or writes it. Again when the experiment begins again.
   virtual void attach(void* port, const Fitting& fitting) = 0;
   /// Before each step of the controller: takes over the port's reading.
   virtual void sense() {}
@@ -64,7 +64,7 @@ class SensorOn : public Cci, public Device {
   const Port* port_ = nullptr;
 };
 
-/// An actuator of ARGoS' class `Cci` on a port; what it is told goes there at once.
+/// An actuator of ARGoS' class `Cci` on a port; commands go there at once.
 template <class Cci, class Port>
 class ActuatorOn : public Cci, public Device {
  public:

@@ -1,4 +1,4 @@
-// A controller of ARGoS' with its devices, which outlives what steps it where loop functions hold it.
+// A controller of ARGoS' with its devices, which outlives its wrapper where loop functions hold it.
 #pragma once
 #include <argos3/core/control_interface/ci_controller.h>
 #include <argos3/core/utility/plugins/factory.h>
@@ -16,7 +16,7 @@ namespace tandem::compat::argos3 {
 
 class Kept final : public KeptController, public Context {
  public:
-  /// Makes the controller and calls Init. @throws what it throws
+  /// Makes the controller and calls Init. @throws its exceptions
   Kept(hal::Robot& robot, const argos::tandem_detail::SRegistration& registration, ticpp::Element& params);
   ~Kept() override;
   Kept(const Kept&) = delete;

@@ -1,4 +1,4 @@
-// Whose ARGoS code runs on a thread: where its text goes, and what its random numbers follow from.
+// The owner of the ARGoS code that runs on a thread: takes its text, seeds its random numbers.
 #pragma once
 #include <argos3/core/utility/math/rng.h>
 #include <cstdint>
@@ -8,14 +8,14 @@
 
 namespace tandem::compat::argos3 {
 
-/// A robot's controller, or the experiment's loop functions. Lives at least as long as what was made under it.
+/// A robot's controller, or the experiment's loop functions. Outlives its generators.
 class Context {
  public:
   virtual ~Context() = default;
   /// A line, or several, of LOG or LOGERR.
   virtual void tell(bool error, std::string_view text) = 0;
 
-  /// What generators follow from that are made now; those that were made begin anew.
+  /// Seeds generators that are made from now on, and begins those again that were made.
   void set_seed(std::uint64_t seed);
   /// Makes a generator of the category's seed and of this seed.
   argos::CRandom::CRNG* make_generator(std::uint64_t category_seed);
@@ -28,7 +28,7 @@ class Context {
 /// Of this thread; null when no code of ARGoS runs on it.
 Context* current_context() noexcept;
 
-/// Makes a context this thread's for as long as this lives, then tells what is left of its text.
+/// Makes a context this thread's for as long as this lives, then hands over the rest of its text.
 class ContextScope {
  public:
   explicit ContextScope(Context& context) noexcept;

@@ -1,4 +1,4 @@
-// ARGoS controllers of this process by the ids of their robots. They live longer than what steps them: users keep
+// ARGoS controllers of this process by the ids of their robots. They live longer than their wrappers: users keep
 // pointers to them across resets.
 #pragma once
 #include <memory>
@@ -24,10 +24,10 @@ void enter_controller(const std::string& robot, const std::shared_ptr<KeptContro
 /// While a robot is made: the controller that robot had before a reset, when `keep_controller` was called for it; it is
 /// to be given the new robot's ports, and reset. Null: a new one is to be made.
 std::shared_ptr<KeptController> kept_controller(const std::string& robot);
-/// Whether loop functions of ARGoS' hold the controllers of this process; then a robot that begins anew under another
+/// Whether loop functions of ARGoS' hold the controllers of this process; then a robot that begins again under another
 /// id takes over the controller of that id.
 bool controllers_are_held();
-/// What stepped it is gone. @returns whether it is held until loop functions end it; else the caller ends it
+/// Its wrapper is gone. @returns whether it is held until loop functions end it; else the caller ends it
 bool leave_controller(const std::string& robot, const KeptController& kept);
 
 // --- for loop functions ---

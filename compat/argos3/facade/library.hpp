@@ -8,7 +8,7 @@
 
 namespace tandem::compat::argos3 {
 
-/// The facade as a surface of plug-ins: what a user's library names in its note, so that the module is loaded before
+/// The facade as a surface of plug-ins: a user's library names it in its note, so that the module is loaded before
 /// it. Raise kNumber with any change of the classes in include/argos3 that users' libraries compile in.
 struct Facade {
   static constexpr std::string_view kCategory = "argos3";
@@ -16,12 +16,12 @@ struct Facade {
   std::string_view name, summary;
 };
 
-/// What the library that holds `address` has registered, in the order of its macros.
+/// Registrations of the library that holds `address`, in the order of its macros.
 std::vector<const argos::tandem_detail::SRegistration*> registrations_of(const void* address);
 
-/// Told whenever the library of a class is closed. Once for each `told`.
+/// Calls `closed` whenever the library of a class is closed. The same function is kept once.
 using Closed = void (*)(const argos::tandem_detail::SRegistration& registration) noexcept;
-void on_closed(Closed told);
+void on_closed(Closed closed);
 
 /// Adds all that this library has registered to the catalog (compat/argos3/register.cpp).
 void register_library(const void* address, hal::Registrar& registrar);
