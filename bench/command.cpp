@@ -20,10 +20,11 @@
 namespace tandem::bench {
 namespace {
 
-constexpr std::array<Bench, 12> kBenches = {
+constexpr std::array<Bench, 13> kBenches = {
     {{"diffusion", &bench_scene, "the standard scene"},
      {"flocking", &bench_scene, "robots that fly, in space"},
      {"lua", &bench_scene, ""},
+     {"argos", &bench_scene, "the standard scene under a controller for ARGoS 3"},
      {"codec", &bench_codec, "messages of a bridge, only with --repeat"},
      {"record", &bench_record, "what a record of all poses costs, with --robots, --threads, --ticks"},
      {"sense_to_act", &bench_sense_to_act,

@@ -69,6 +69,7 @@ inline constexpr std::array<Word, 2> kOfWindow = {"live", "pictures"};
 inline constexpr std::array<Word, 6> kOfLab = {"dynamics", "live", "pictures", "real", "window", "study"};
 inline constexpr std::array<Word, 5> kRealCategories = {"bridge", "inspector", "emulator", "tracker", "stopper"};
 inline constexpr std::array<Word, 1> kPictureCategories = {"layer"};
+inline constexpr std::array<Word, 1> kArgosCategories = {"argos3"};
 inline constexpr std::array<Word, 4> kRealElements = {"bridge", "peer", "trackers", "footbot_map"};
 inline constexpr std::array<Word, 1> kStudyElements = {"study"};
 inline constexpr std::array<Word, 3> kRealLists = {"bridges", "emulators", "trackers"};
@@ -80,7 +81,7 @@ inline constexpr std::array<Word, 4> kDynamicsElements = {"dynamics2d", "dynamic
 }  // namespace module_table
 
 /// In the order in which they can be loaded.
-inline constexpr std::array<Module, 7> kModules = {
+inline constexpr std::array<Module, 8> kModules = {
     {{"dynamics", "physics engines with forces", 1, {}, {}, {}, module_table::kDynamicsElements},
      {"live", "runs that people hold and watch", 1, {}, {}, {}, {}},
      {"pictures",
@@ -102,7 +103,8 @@ inline constexpr std::array<Module, 7> kModules = {
       {},
       module_table::kStudyElements,
       module_table::kStudyLists},
-     {"lab", "fits, benchmarks, validation, checks of plug-ins", 5, module_table::kOfLab, module_table::kLab, {}, {}}}};
+     {"lab", "fits, benchmarks, validation, checks of plug-ins", 5, module_table::kOfLab, module_table::kLab, {}, {}},
+     {"argos3", "sources for ARGoS 3: its headers and classes", 1, {}, {}, module_table::kArgosCategories, {}}}};
 
 /// A module's command as the table has it. Its command type says the same.
 consteval ModuleCommand command_in_table(std::string_view name) {

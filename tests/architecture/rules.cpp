@@ -25,7 +25,8 @@ const std::map<std::string, std::set<std::string>> kLayers = {
     {"python", {"python", "library", "app", "core", "hal"}},
     {"validate", {"validate", "library", "app", "study", "core", "hal"}},
     {"lab", {"lab", "bench", "validate", "app", "hal"}},
-    {"linked", {"linked", "lab", "app", "bridges", "core", "hal"}},
+    {"compat", {"compat", "core", "hal"}},
+    {"linked", {"linked", "lab", "compat", "app", "bridges", "core", "hal"}},
     {"bench", {"bench", "app", "window", "study", "mixed_reality", "core", "bridges", "controllers", "hal"}}};
 
 std::string layer_of(const std::string& folder) {
