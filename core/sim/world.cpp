@@ -23,6 +23,7 @@ bool World::step() {
   if (w.external != nullptr) w.external->latch(*this);
   w.act();
   w.physics();
+  w.before_sense();
   w.in_controllers = true;
   if (w.external == nullptr) {
     w.sense_and_control();
@@ -70,6 +71,20 @@ void World::Impl::each_block(MeasuredPhase& phase, Work&& work) {
   phase.run(*pool, stores().blocks.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t block = begin; block < end; ++block) work(block);
   });
+}
+
+/// The hooks' turn between physics and sensing; what sensors look into follows their changes.
+void World::Impl::before_sense() {
+  SpaceStores& s = stores();
+  const bool changed_before = std::exchange(s.bodies_changed, false);
+  call_hooks("before_sense", [](Hook& hook, HookContext& c) { hook.before_sense(c); });
+  paint_fields();
+  const bool changed = std::exchange(s.bodies_changed, s.bodies_changed || changed_before);
+  if (!changed && indexed_version == s.immovables_version) return;
+  settle_changes();
+  rebuild_index();
+  index_movables();
+  media.index(s);
 }
 
 void World::Impl::sense_and_control() {

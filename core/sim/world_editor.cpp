@@ -217,10 +217,10 @@ hal::Result<RobotItem> WorldEditor::item_for(const NewRobot& wanted) const {
   return item;
 }
 
-hal::Status WorldEditor::accept(const std::string& who, std::size_t row) {
+hal::Status WorldEditor::accept(const std::string& who, std::size_t row, bool may_overlap) {
   const BodyKey self = BodyKey::robot(row);
   const Obstacle o = obstacle_of(self);
-  if (const auto other = in_the_way(o, self, false))
+  if (const auto other = may_overlap ? std::nullopt : in_the_way(o, self, false))
     return hal::Error{who + " would be at " + hal::place_text(o.x_m, o.y_m) + ", where " + name_of(*other) + " is"};
   const std::uint16_t region = assigner_.find(stores_, self);
   if (region == kNoRegion) {
@@ -239,7 +239,7 @@ hal::Result<RobotId> WorldEditor::add_robot(const NewRobot& wanted) {
   if (const hal::Status placed = check_place(who, wanted.pose); !placed.ok()) return placed.error();
   const hal::Result<RobotItem> item = item_for(wanted);
   if (!item.ok()) return item.error();
-  return factory_.add(item.value(), wanted.pose, [&](std::size_t row) { return accept(who, row); });
+  return factory_.add(item.value(), wanted.pose, [&](std::size_t row) { return accept(who, row, wanted.may_overlap); });
 }
 
 // --- objects ---

@@ -220,6 +220,7 @@ struct World::Impl final : hal::RobotLog::Sink {
   // --- one tick ---
   void act();
   void physics();
+  void before_sense();
   void move_part(int part);
   void settle_changes();
   void stop_on_trouble();
