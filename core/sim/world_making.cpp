@@ -383,7 +383,12 @@ void World::Impl::populate(Problems& problems) {
 void World::Impl::make_hook(std::size_t i, Problems& problems) {
   const HookConfig& config = scenario.hooks[i];
   hooks[i].reset();  // closes its files before the next opens them
-  const HookType& type = *loader->get<HookType>(config.library, config.label).value();
+  const auto found = loader->get<HookType>(config.library, config.label);
+  if (!found.ok()) {  // told when the world was made
+    hooks[i] = std::make_unique<Hook>();
+    return;
+  }
+  const HookType& type = *found.value();
   std::string why = "has no function that makes it; register it with hook_type";
   if (type.make != nullptr) {
     const hal::PluginCall call(&name_hook_made, &config);
@@ -404,7 +409,10 @@ void World::Impl::make_hooks(Problems& problems) {
     if (type.ok())
       make_hook(hooks.size() - 1, problems);
     else
-      problems.push_back({scenario.file, config.line, "loop_functions: " + type.error().message, false});
+      problems.push_back({scenario.file, config.line,
+                          (config.optional ? "user_functions are left out: " : "loop_functions: ") +
+                              type.error().message,
+                          config.optional});
   }
 }
 

@@ -47,12 +47,7 @@ WorldDoor& Session::world() const {
   return *world_;
 }
 
-void Session::enter(WorldDoor& world) {
-  if (world_ != nullptr && world_ != &world)
-    THROW_ARGOSEXCEPTION(
-        "another run of ARGoS classes goes on in this process, which they have one of: end it first, or start another "
-        "process (sweeps do)")
-  const bool again = world_ == &world;
+void Session::enter(WorldDoor& world, bool again) {
   world_ = &world;
   terminated = false;
   loop_context().set_seed(world.seed());
@@ -60,8 +55,11 @@ void Session::enter(WorldDoor& world) {
   argos::CSimulator& simulator = argos::CSimulator::GetInstance();
   argos::CSpaceAccess::NewRun(simulator);
   const ContextScope scope(loop_context());
-  if (!again) return argos::CSpaceAccess::Fill(simulator.GetSpace());
   argos::CSpaceAccess::Sweep(simulator.GetSpace());
+  if (!again) {
+    argos::CSpaceAccess::Clear(simulator.GetSpace());
+    return argos::CSpaceAccess::Fill(simulator.GetSpace());
+  }
   argos::CSpaceAccess::FindAgain(simulator.GetSpace());
   for (const auto& functions : user_functions_) functions->Reset();
   if (loop_functions_ != nullptr) loop_functions_->Reset();
@@ -75,7 +73,7 @@ void Session::leave(const WorldDoor& world) {
   selected_ = nullptr;
   keys_.clear();
   argos::CSpaceAccess::Clear(argos::CSimulator::GetInstance().GetSpace());
-  end_all_controllers();
+  end_left_controllers();
   world_ = nullptr;
   painted = false;
 }

@@ -20,10 +20,9 @@ class Session {
   static Session& get();
 
   // --- a run's life, called by its hooks or by a program of one's own ---
-  /// The first call of a run takes its world, and makes an entity of everything in it. Of a run that begins again:
-  /// finds the entities again, and brings back what loop functions had added. @throws CARGoSException when another
-  /// world is there
-  void enter(WorldDoor& world);
+  /// Takes the world of a run that begins, and makes an entity of everything in it. `again`: the entities are there;
+  /// finds them in the world, and brings back what loop functions had added.
+  void enter(WorldDoor& world, bool again);
   /// The world is gone, or about to go: ends what is left of user code.
   void leave(const WorldDoor& world);
   /// Makes the loop functions and calls Init.
