@@ -203,7 +203,7 @@ void describe_params(const hal::ControllerType& type, hal::ParamVisitor& manual)
   (void)type.read_params(manual);
 }
 void describe_params(const core::HookType& type, hal::ParamVisitor& manual) {
-  type.describe(manual);
+  if (type.describe != nullptr) type.describe(manual);
 }
 
 template <class T>

@@ -119,7 +119,7 @@ struct HookType {
   std::string_view summary;
   /// Reads its options from the file; problems are reported with their lines.
   std::unique_ptr<Hook> (*make)(const Element& options, Problems& problems) = nullptr;
-  /// Shows its parameters to `visitor`, for the manual.
+  /// Shows its parameters to `visitor`, for the manual. Null: it reads its element by itself.
   void (*describe)(hal::ParamVisitor& visitor) = nullptr;
 };
 

@@ -2,6 +2,7 @@
 #include <argos3/core/utility/logging/argos_log.h>
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <mutex>
 #include <sstream>
@@ -21,6 +22,14 @@ struct LogFile {
 };
 std::array<LogFile, 2>& log_files() {
   static std::array<LogFile, 2> all;
+  static const bool opened = [] {  // as the command `argos3 -l FILE -e FILE` wants it
+    const std::array<const char*, 2> wanted = {std::getenv("TANDEM_ARGOS3_LOG"), std::getenv("TANDEM_ARGOS3_LOGERR")};
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (wanted[i] != nullptr) all[i].file.open(wanted[i], std::ios::app);
+    }
+    return true;
+  }();
+  (void)opened;
   return all;
 }
 
@@ -33,7 +42,7 @@ void tell(bool error, std::string_view text) {
   if (context != nullptr)
     context->tell(error, text);
   else
-    std::fprintf(stderr, "%.*s\n", static_cast<int>(text.size()), text.data());
+    std::fprintf(error ? stderr : stdout, "%.*s\n", static_cast<int>(text.size()), text.data());
 }
 
 /// Text of one thread that has not been told. Whole lines are told when something is flushed or a line ends.

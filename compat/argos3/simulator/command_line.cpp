@@ -80,6 +80,13 @@ void CARGoSCommandLineArgParser::Parse(SInt32 count, char** values) {
   if (!m_strLogErrFile.empty()) LOGERR.RedirectToFile(m_strLogErrFile);
 }
 
+void QueryPlugins(const std::string& query) {
+  std::string quoted = "'";
+  for (const char c : query) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  const std::string command = "'" + std::string(ARGOS_INSTALL_PREFIX) + "/bin/argos3' -q " + quoted + "'";
+  if (std::system(command.c_str()) != 0) THROW_ARGOSEXCEPTION("'" << command << "' failed")
+}
+
 void CARGoSCommandLineArgParser::PrintUsage(CARGoSLog& log) {
   log << "Runs experiments of ARGoS 3 in Tandem." << std::endl;
   CCommandLineArgParser::PrintUsage(log);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "compat/argos3/facade/configuration.hpp"
+#include "compat/argos3/facade/controllers.hpp"
 #include "compat/argos3/simulator/session.hpp"
 #include "compat/argos3/simulator/world_adapter.hpp"
 
@@ -31,9 +32,13 @@ class ArgosHook : public core::Hook {
   ArgosHook(const SRegistration& made_by, const core::Element& options)
       : made_by_(made_by), tree_(to_node(options)), file_(options.file), world_(shared_world()) {
     world_->begin_afresh();
+    hold_controllers(true);
   }
   ~ArgosHook() override {
-    if (entered_ && world_.use_count() == 1) Session::get().leave(*world_);
+    if (world_.use_count() > 1) return;
+    if (entered_) Session::get().leave(*world_);
+    hold_controllers(false);
+    end_left_controllers();
   }
 
   void before_run(core::HookContext& c) override {

@@ -73,7 +73,6 @@ void Session::leave(const WorldDoor& world) {
   selected_ = nullptr;
   keys_.clear();
   argos::CSpaceAccess::Clear(argos::CSimulator::GetInstance().GetSpace());
-  end_left_controllers();
   world_ = nullptr;
   painted = false;
 }

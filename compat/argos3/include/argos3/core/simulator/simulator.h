@@ -79,7 +79,7 @@ class CSimulator {
   ARGOS3_NO_FUNCTION(Init, "call LoadExperiment")
   ARGOS3_NO_FUNCTION(Load, "write the document to a file and name it with SetExperimentFileName")
   ARGOS3_NO_FUNCTION(SetLoopFunctions, "name them in the experiment file: <loop_functions library=\"…\" label=\"…\"/>")
-  ARGOS3_NO_FUNCTION(SetRealTimeClock, "tandem run --real-time")
+  ARGOS3_NO_FUNCTION(SetRealTimeClock, "set <time mode=\"realtime\"/> in the experiment file")
   ARGOS3_NO_FUNCTION(GetProfiler, "tandem run prints and reports what a tick costs")
 
  private:
