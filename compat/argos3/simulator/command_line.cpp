@@ -6,6 +6,7 @@
 #include <argos3/core/config.h>
 #include <argos3/core/simulator/argos_command_line_arg_parser.h>
 #include <argos3/core/simulator/query_plugins.h>
+#include <argos3/core/simulator/simulator.h>
 #include <argos3/core/utility/configuration/argos_exception.h>
 #include <argos3/core/utility/configuration/command_line_arg_parser.h>
 
@@ -83,7 +84,8 @@ void CARGoSCommandLineArgParser::Parse(SInt32 count, char** values) {
 void QueryPlugins(const std::string& query) {
   std::string quoted = "'";
   for (const char c : query) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  const std::string command = "'" + std::string(ARGOS_INSTALL_PREFIX) + "/bin/argos3' -q " + quoted + "'";
+  const std::string prefix = CSimulator::GetInstance().GetInstallationDirectory();
+  const std::string command = (prefix.empty() ? "argos3" : "'" + prefix + "/bin/argos3'") + " -q " + quoted + "'";
   if (std::system(command.c_str()) != 0) THROW_ARGOSEXCEPTION("'" << command << "' failed")
 }
 

@@ -174,7 +174,7 @@ UInt32 CSimulator::GetNumThreads() const {
 }
 std::string CSimulator::GetInstallationDirectory() const {
   const char* const set = std::getenv("ARGOS_PREFIX");
-  return set != nullptr ? set : ARGOS_INSTALL_PREFIX;
+  return set != nullptr ? set : "";
 }
 
 // --- programs of one's own ---

@@ -55,6 +55,7 @@ class CSimulator {
   UInt32 GetNumThreads() const;
   bool IsRealTimeClock() const { return false; }
   bool IsProfiling() const { return false; }
+  /// Of the variable ARGOS_PREFIX; empty: it is not set.
   std::string GetInstallationDirectory() const;
 
   /// Reads the file, makes its robots and controllers, calls CLoopFunctions::Init. @throws CARGoSException with all
