@@ -53,13 +53,9 @@ class ArgosRun final : public argos3::OwnRun {
   }
 
  private:
-  /// Such programs have no view; CSimulator looks at the world through a hook.
+  /// Such programs have no view.
   static void fit_hooks(core::Scenario& scenario) {
     std::erase_if(scenario.hooks, [](const core::HookConfig& hook) { return hook.label.starts_with("qt-opengl "); });
-    core::HookConfig look{std::string(hal::Catalog::kInside), "argos3", {}, 0};
-    look.options.name = "loop_functions";
-    look.options.file = scenario.file;
-    scenario.hooks.push_back(std::move(look));
   }
 
   hal::PluginLoader loader_;  // outlives the world

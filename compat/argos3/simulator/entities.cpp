@@ -164,7 +164,10 @@ CControllableEntity::~CControllableEntity() {}
 
 CCI_Controller& CControllableEntity::GetController() {
   const CEntity& robot = GetRootEntity();
-  if (CCI_Controller* const found = tandem::compat::argos3::controller_of(robot.GetId())) return *found;
+  const auto* const known = dynamic_cast<const CRobotEntity*>(&robot);
+  CCI_Controller* const found =
+      known == nullptr ? nullptr : tandem::compat::argos3::controller_of(known->GetIdInWorld());
+  if (found != nullptr) return *found;
   refuse(robot.GetId(), "it has no ARGoS controller: it is not in the space, or its configuration \"" +
                             m_strConfiguration + "\" names a controller of Tandem's own");
 }

@@ -32,11 +32,10 @@ class ArgosHook : public core::Hook {
   ArgosHook(const SRegistration& made_by, const core::Element& options)
       : made_by_(made_by), tree_(to_node(options)), file_(options.file), world_(shared_world()) {
     world_->begin_afresh();
-    hold_controllers(true);
   }
   ~ArgosHook() override {
     if (world_.use_count() > 1) return;
-    if (entered_) Session::get().leave(*world_);
+    Session::get().leave(*world_);
     hold_controllers(false);
     end_left_controllers();
   }
@@ -68,6 +67,8 @@ class ArgosHook : public core::Hook {
  protected:
   virtual void begin(const SRegistration& made_by, ::argos::TConfigurationNode& tree) = 0;
 
+  bool sees(const core::HookContext& c) const noexcept { return world_->may_be(c.space); }
+
  private:
   void look(core::HookContext& c, hal::Tick clock) { world_->look(c, static_cast<std::uint32_t>(clock)); }
 
@@ -80,7 +81,9 @@ class ArgosHook : public core::Hook {
 
 class LoopFunctions final : public ArgosHook {
  public:
-  using ArgosHook::ArgosHook;
+  LoopFunctions(const SRegistration& made_by, const core::Element& options) : ArgosHook(made_by, options) {
+    hold_controllers(true);  // users keep pointers to them
+  }
   ~LoopFunctions() override { Session::get().destroy_loop_functions(); }
 
   void before_sense(core::HookContext& c) override {
@@ -109,7 +112,9 @@ class LoopFunctions final : public ArgosHook {
 
 class UserFunctions final : public ArgosHook {
  public:
-  using ArgosHook::ArgosHook;
+  UserFunctions(const SRegistration& made_by, const core::Element& options) : ArgosHook(made_by, options) {
+    hold_controllers(true);
+  }
   ~UserFunctions() override { Session::get().destroy_user_functions(); }
 
   void before_run(core::HookContext& c) override {
@@ -140,10 +145,28 @@ class UserFunctions final : public ArgosHook {
   std::string selected_, keys_;
 };
 
-/// Does nothing but let CSimulator see the world.
+/// Does nothing but let CSimulator see the world, for controllers that ask it for the time, say. Of several worlds in a
+/// process it sees the first.
 class Look final : public ArgosHook {
  public:
   using ArgosHook::ArgosHook;
+  void before_run(core::HookContext& c) override {
+    if (sees(c)) ArgosHook::before_run(c);
+  }
+  void before_step(core::HookContext& c) override {
+    if (sees(c)) ArgosHook::before_step(c);
+  }
+  void before_sense(core::HookContext& c) override {
+    if (sees(c)) ArgosHook::before_sense(c);
+  }
+  void after_step(core::HookContext& c) override {
+    if (sees(c)) ArgosHook::after_step(c);
+  }
+  bool is_done(core::HookContext& c) override { return sees(c) && ArgosHook::is_done(c); }
+  void after_run(core::HookContext& c) override {
+    if (sees(c)) ArgosHook::after_run(c);
+  }
+  bool remember(hal::Archive&) override { return true; }
 
  protected:
   void begin(const SRegistration&, ::argos::TConfigurationNode&) override {}
@@ -185,7 +208,7 @@ std::unique_ptr<core::Hook> make_look(const core::Element& options, core::Proble
 
 const core::HookType& look_hook() {
   static const core::HookType type = {"argos3", "Lets ARGoS' CSimulator see the world; does nothing else.", &make_look,
-                                      nullptr};
+                                      nullptr, true};
   return type;
 }
 

@@ -257,6 +257,7 @@ void CRobotEntity::JoinWorld() {
                                             place_of(m_pcBody->GetInitPosition(), m_pcBody->GetInitOrientation()), added);
   if (!why.empty()) refuse(GetId(), why);
   m_pcBody->SetBody(added);
+  m_strIdInWorld = world().id_in_world(added);
 }
 void CRobotEntity::LeaveWorld() {
   const Body body = body_of(*this);
@@ -266,6 +267,7 @@ bool CRobotEntity::FindInWorld() {
   const Body found = world().find_robot(GetId());
   if (found.Kind == Body::NONE) return false;
   m_pcBody->SetBody(found);
+  m_strIdInWorld = GetId();
   return true;
 }
 

@@ -14,9 +14,13 @@ class LoopContext final : public Context {
  public:
   void tell(bool error, std::string_view text) override { (error ? std::cerr : std::cout) << text << std::endl; }
 };
-Context& loop_context() {
-  static Context* const context = new LoopContext;  // outlives static objects of libraries
+/// Of this run; another one begins with generators of its own. Outlives static objects of libraries.
+std::unique_ptr<LoopContext>& loop_context_of_run() {
+  static auto* const context = new std::unique_ptr<LoopContext>(new LoopContext);
   return *context;
+}
+Context& loop_context() {
+  return *loop_context_of_run();
 }
 
 }  // namespace
@@ -50,16 +54,14 @@ WorldDoor& Session::world() const {
 void Session::enter(WorldDoor& world, bool again) {
   world_ = &world;
   terminated = false;
+  if (!again) loop_context_of_run() = std::make_unique<LoopContext>();
   loop_context().set_seed(world.seed());
   set_run_seed(world.seed());
   argos::CSimulator& simulator = argos::CSimulator::GetInstance();
   argos::CSpaceAccess::NewRun(simulator);
   const ContextScope scope(loop_context());
+  if (!again) return argos::CSpaceAccess::Clear(simulator.GetSpace());
   argos::CSpaceAccess::Sweep(simulator.GetSpace());
-  if (!again) {
-    argos::CSpaceAccess::Clear(simulator.GetSpace());
-    return argos::CSpaceAccess::Fill(simulator.GetSpace());
-  }
   argos::CSpaceAccess::FindAgain(simulator.GetSpace());
   for (const auto& functions : user_functions_) functions->Reset();
   if (loop_functions_ != nullptr) loop_functions_->Reset();

@@ -1,6 +1,7 @@
 // The space: entities of the world that runs.
 #include <algorithm>
 #include <memory>
+#include <mutex>
 #include <regex>
 #include <set>
 
@@ -36,6 +37,8 @@ struct CSpace::SState {
   std::set<const CEntity*> Removed;
   std::map<std::string, std::vector<std::string> > RemovedKeys;  // by type
   bool VectorsHoldRemoved = false;
+  bool IsFilled = false;            ///< entities are made when they are asked for
+  std::recursive_mutex Filling;     ///< controllers may ask, on any thread
   std::set<std::string> FromFile, FromFileRemoved;  // ids
   mutable CVector3 Size, Center;
   mutable CRange<CVector3> Limits;
@@ -91,27 +94,32 @@ CSpace::~CSpace() {
   delete m_psState;
 }
 
+CSpace::SState& CSpace::Filled() const {
+  if (Session::get().entered()) CSpaceAccess::Fill(const_cast<CSpace&>(*this));
+  return *m_psState;
+}
+
 UInt32 CSpace::GetNumberEntities() {
   return static_cast<UInt32>(GetEntityVector().size());
 }
 CEntity::TVector& CSpace::GetEntityVector() {
-  m_psState->SweepVectors();
-  return m_psState->All;
+  Filled().SweepVectors();
+  return Filled().All;
 }
 CEntity::TVector& CSpace::GetRootEntityVector() {
-  m_psState->SweepVectors();
-  return m_psState->Roots;
+  Filled().SweepVectors();
+  return Filled().Roots;
 }
 CEntity::TMap& CSpace::GetEntityMapPerId() {
-  return m_psState->ById;
+  return Filled().ById;
 }
 CSpace::TMapPerTypePerId& CSpace::GetEntityMapPerTypePerId() {
-  for (const auto& entry : m_psState->ByType) m_psState->SweepType(entry.first);
-  return m_psState->ByType;
+  for (const auto& entry : Filled().ByType) Filled().SweepType(entry.first);
+  return Filled().ByType;
 }
 CEntity& CSpace::GetEntity(const std::string& id) {
-  const auto found = m_psState->ById.find(id);
-  if (found == m_psState->ById.end()) refuse(id, "there is no entity of this id in the space");
+  const auto found = Filled().ById.find(id);
+  if (found == Filled().ById.end()) refuse(id, "there is no entity of this id in the space");
   return *found->second;
 }
 void CSpace::GetEntitiesMatching(CEntity::TVector& found, const std::string& pattern) {
@@ -122,14 +130,14 @@ void CSpace::GetEntitiesMatching(CEntity::TVector& found, const std::string& pat
 }
 
 CSpace::TMapPerType& CSpace::GetEntitiesByType(const std::string& type) {
-  const auto found = m_psState->ByType.find(type);
-  if (found == m_psState->ByType.end()) {
+  const auto found = Filled().ByType.find(type);
+  if (found == Filled().ByType.end()) {
     world();  // says when no experiment runs
     std::string there;
-    for (const auto& entry : m_psState->ByType) there += (there.empty() ? "" : ", ") + entry.first;
+    for (const auto& entry : Filled().ByType) there += (there.empty() ? "" : ", ") + entry.first;
     THROW_ARGOSEXCEPTION("there are no entities of type \"" << type << "\" in the space; there are: " << there)
   }
-  m_psState->SweepType(type);
+  Filled().SweepType(type);
   return found->second;
 }
 const CSpace::TMapPerType& CSpace::GetEntitiesByType(const std::string& type) const {
@@ -137,31 +145,31 @@ const CSpace::TMapPerType& CSpace::GetEntitiesByType(const std::string& type) co
 }
 
 CFloorEntity& CSpace::GetFloorEntity() {
-  if (m_psState->Floor == nullptr)
+  if (Filled().Floor == nullptr)
     THROW_ARGOSEXCEPTION("the arena has no floor: add <floor id=\"floor\" source=\"loop_functions\" "
                          "pixels_per_meter=\"50\"/> to <arena>")
-  return *m_psState->Floor;
+  return *Filled().Floor;
 }
 
 void CSpace::AddEntity(CEntity& entity) {
-  const auto taken = m_psState->ById.find(entity.GetId());
-  if (taken != m_psState->ById.end())
+  const auto taken = Filled().ById.find(entity.GetId());
+  if (taken != Filled().ById.end())
     refuse(entity.GetId(), "an entity of type \"" + taken->second->GetTypeDescription() + "\" has this id already");
   entity.JoinWorld();
-  m_psState->Enter(entity);
+  Filled().Enter(entity);
   if (!entity.IsEnabled()) entity.SetEnabled(false);
 }
 
 void CSpace::RemoveEntity(CEntity& entity) {
-  const auto found = m_psState->ById.find(entity.GetContext() + entity.GetId());
-  if (found == m_psState->ById.end() || found->second != &entity || entity.HasParent())
+  const auto found = Filled().ById.find(entity.GetContext() + entity.GetId());
+  if (found == Filled().ById.end() || found->second != &entity || entity.HasParent())
     refuse(entity.GetId(), entity.HasParent() ? "it is a part of another entity, and is removed with it"
                                               : "it is not in the space, or no more");
-  if (&entity == m_psState->Floor) refuse(entity.GetId(), "the floor cannot be removed");
-  if (m_psState->FromFile.count(entity.GetId()) != 0) m_psState->FromFileRemoved.insert(entity.GetId());
+  if (&entity == Filled().Floor) refuse(entity.GetId(), "the floor cannot be removed");
+  if (Filled().FromFile.count(entity.GetId()) != 0) Filled().FromFileRemoved.insert(entity.GetId());
   entity.LeaveWorld();
-  m_psState->Leave(entity);
-  m_psState->RemovedRoots.push_back(&entity);
+  Filled().Leave(entity);
+  Filled().RemovedRoots.push_back(&entity);
 }
 
 void CSpace::IterateOverControllableEntities(const TControllableEntityIterCBType& call) {
@@ -230,6 +238,9 @@ bool file_has_floor(bool& painted) {
 
 void CSpaceAccess::Fill(CSpace& space) {
   CSpace::SState& s = *space.m_psState;
+  const std::lock_guard lock(s.Filling);
+  if (s.IsFilled) return;
+  s.IsFilled = true;
   if (file_has_floor(Session::get().painted)) s.Enter(*(s.Floor = new CFloorEntity));
   const auto enter = [&](const compat::WorldDoor::Named& one) {
     CEntity* const entity = entity_of(one).release();
@@ -251,6 +262,7 @@ void CSpaceAccess::Fill(CSpace& space) {
 
 void CSpaceAccess::FindAgain(CSpace& space) {
   CSpace::SState& s = *space.m_psState;
+  if (!s.IsFilled) return;
   for (const std::string& id : s.FromFileRemoved) {
     for (const compat::Body& body : {world().find_robot(id), world().find_object(id)}) {
       if (body.Kind != compat::Body::NONE) world().remove(body);
@@ -261,7 +273,7 @@ void CSpaceAccess::FindAgain(CSpace& space) {
   }
   for (CEntity* const entity : CEntity::TVector(space.GetRootEntityVector())) {
     if (!entity->FindInWorld()) {
-      compat::keep_controller(entity->GetId());
+      if (const auto* const robot = dynamic_cast<CRobotEntity*>(entity)) compat::keep_controller(robot->GetIdInWorld());
       entity->JoinWorld();
     }
     entity->Reset();
@@ -282,8 +294,7 @@ void CSpaceAccess::Sweep(CSpace& space) {
   s.RemovedKeys.clear();
   for (CEntity* const entity : s.RemovedRoots) {
     entity->Destroy();
-    if (dynamic_cast<CRobotEntity*>(entity) != nullptr && s.ById.count(entity->GetId()) == 0)
-      compat::end_controller(entity->GetId());
+    if (const auto* const robot = dynamic_cast<CRobotEntity*>(entity)) compat::end_controller(robot->GetIdInWorld());
     delete entity;
   }
   s.RemovedRoots.clear();

@@ -154,6 +154,10 @@ bool WorldAdapter::there(const Body& body) const {
   return body.Kind == Body::ROBOT ? space_->contains(robot_id(body)) : space_->contains(object_id(body));
 }
 
+std::string WorldAdapter::id_in_world(const Body& robot) const {
+  return space_->robot_name(robot_id(robot));
+}
+
 Place WorldAdapter::place(const Body& body) const {
   if (body.Kind == Body::ROBOT) {
     const core::Pose p = space_->pose(robot_id(body));

@@ -37,6 +37,7 @@ class WorldAdapter final : public WorldDoor {
   Body find_robot(const std::string& id) const override;
   Body find_object(const std::string& id) const override;
   bool there(const Body& body) const override;
+  std::string id_in_world(const Body& robot) const override;
   Place place(const Body& body) const override;
   Form form(const Body& body) const override;
   void put(const Body& body, const Place& place) override;

@@ -73,6 +73,7 @@ class WorldDoor {
   virtual Body find_robot(const std::string& id) const = 0;
   virtual Body find_object(const std::string& id) const = 0;
   virtual bool there(const Body& body) const = 0;
+  virtual std::string id_in_world(const Body& robot) const = 0;
   virtual Place place(const Body& body) const = 0;
   virtual Form form(const Body& body) const = 0;
   virtual void put(const Body& body, const Place& place) = 0;

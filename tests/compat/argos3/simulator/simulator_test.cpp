@@ -19,7 +19,7 @@ using testing::Not;
 
 const fs::path kTop = test::kSourceDir;
 const fs::path kProject = kTop / "tests/compat/argos3/simulator/project";
-const std::string kPrefix = std::string(test::kBuildDir) + "/argos3";
+const std::string kPrefix = std::string(test::kBuildDir) + "/lib";
 
 int shell(const std::string& command, const fs::path& folder) {
   const std::string all = "cd '" + folder.string() + "' && (" + command + ") >log 2>&1 </dev/null";

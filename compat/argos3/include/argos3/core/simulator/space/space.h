@@ -73,6 +73,7 @@ class CSpace {
   CSpace();
   ~CSpace();
   struct SState;
+  SState& Filled() const;
   SState* m_psState;
 };
 

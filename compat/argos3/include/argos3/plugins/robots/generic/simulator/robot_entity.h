@@ -33,6 +33,9 @@ class CRobotEntity : public CComposableEntity {
   void LeaveWorld() override;
   bool FindInWorld() override;
 
+  /// ARGoS gives the id of a robot that was removed again, Tandem once: a second "fb" is "fb~2" in the world.
+  const std::string& GetIdInWorld() const { return m_strIdInWorld; }
+
   ARGOS3_NO_FUNCTION(GetGroundSensorEquippedEntity, "ask the controller for its sensor")
   ARGOS3_NO_FUNCTION(GetLightSensorEquippedEntity, "ask the controller for its sensor")
   ARGOS3_NO_FUNCTION(GetProximitySensorEquippedEntity, "ask the controller for its sensor")
@@ -41,7 +44,7 @@ class CRobotEntity : public CComposableEntity {
   CWheeledEntity& Wheels();
 
  private:
-  std::string m_strKind;
+  std::string m_strKind, m_strIdInWorld;
   CControllableEntity* m_pcController;
   CEmbodiedEntity* m_pcBody;
   CLEDEquippedEntity* m_pcLEDs;
