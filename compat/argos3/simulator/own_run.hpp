@@ -17,7 +17,7 @@ class OwnRun {
   virtual std::string reset(std::uint64_t seed) = 0;
 };
 
-/// What libtandem.so exports under the name `tandem_argos3_open_run`. Null: `why` says what is wrong.
+/// The function that libtandem.so exports as `tandem_argos3_open_run`. Null: `why` names all problems.
 using OpenOwnRun = OwnRun* (*)(const char* file, const std::uint64_t* seed, std::string& why);
 
 }  // namespace tandem::compat::argos3

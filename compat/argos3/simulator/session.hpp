@@ -21,9 +21,9 @@ class Session {
 
   // --- a run's life, called by its hooks or by a program of one's own ---
   /// Takes the world of a run that begins, and makes an entity of everything in it. `again`: the entities are there;
-  /// finds them in the world, and brings back what loop functions had added.
+  /// finds them in the world, and brings back those that loop functions had added.
   void enter(WorldDoor& world, bool again);
-  /// The world is gone, or about to go: ends what is left of user code.
+  /// The world is gone, or about to go: ends user code.
   void leave(const WorldDoor& world);
   /// Makes the loop functions and calls Init.
   void init_loop_functions(const ::argos::tandem_detail::SRegistration& made_by, ::argos::TConfigurationNode& tree);
@@ -31,7 +31,7 @@ class Session {
   void add_user_functions(const ::argos::tandem_detail::SRegistration& made_by, ::argos::TConfigurationNode& tree);
   void destroy_user_functions();
 
-  // --- phases of a tick; each looks at all bodies anew, and ends with the removal of what it removed ---
+  // --- phases of a tick; each begins with a look at all bodies, and ends with the deletion of removed entities ---
   void pre_step();
   void post_step();
   bool is_finished();
@@ -55,7 +55,7 @@ class Session {
   void forget(const ::argos::CEntity& entity);
 
   bool terminated = false;
-  /// A program of one's own steps the world: nobody else asks whether the experiment is finished.
+  /// A program of one's own steps the world, and asks by itself whether the experiment is finished.
   bool own_program = false;
   std::optional<std::uint32_t> wanted_seed;
   std::string file;  ///< of the experiment
@@ -76,7 +76,7 @@ inline WorldDoor& world() {
   return Session::get().world();
 }
 
-/// Text of who and why, thrown.
+/// Throws a CARGoSException that names the entity and the reason.
 [[noreturn]] void refuse(const std::string& who, const std::string& why);
 
 ::argos::CVector3 vector_of(const Place& place);
@@ -87,7 +87,7 @@ Place place_of(const ::argos::CVector3& position, const ::argos::CQuaternion& or
 
 namespace argos {
 
-/// What the session does to the space.
+/// The session's door to the space.
 class CSpaceAccess {
  public:
   static void Fill(CSpace& space);

@@ -12,11 +12,11 @@ namespace tandem::compat::argos3 {
 
 class WorldAdapter final : public WorldDoor {
  public:
-  /// What a hook was called with; `clock` ticks have begun.
+  /// Takes the world from a hook's context; `clock` ticks have begun.
   void look(core::HookContext& context, std::uint32_t clock);
   /// Whether it looks at this space, or at none yet.
   bool may_be(const core::Space& space) const noexcept { return space_ == nullptr || space_ == &space; }
-  /// Whether a run begins, with all that is in the world new, or with what was there before the reset.
+  /// Whether a run begins: with a new world, or with the entities from before its reset.
   enum class Begins : std::uint8_t { Afresh, Again, Goes };
   Begins begins() noexcept { return std::exchange(begins_, Begins::Goes); }
   void begin_afresh() noexcept { begins_ = Begins::Afresh; }

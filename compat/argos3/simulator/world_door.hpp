@@ -49,7 +49,7 @@ struct Ink {
 };
 using Point = std::array<double, 3>;
 
-/// What functions give back as a text is why it could not be done; empty: done.
+/// A text that a function returns is the reason for which it did nothing; empty: done.
 class WorldDoor {
  public:
   struct Named {
