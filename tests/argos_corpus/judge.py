@@ -5,7 +5,8 @@
     judge.py PROJECT --argos3 PROGRAM [NAME…]    the same by ARGoS 3 itself
 
 The first comment of an experiment has lines after "expect": a key and a value, or numbers with "+- TOLERANCE". Runs print
-lines "RESULT key value"; a key's last value counts. "run PROGRAM ARGUMENT…" names a program of the project that runs the
+lines "RESULT key value"; a key's last value counts. "fails TEXT" says instead that the run must end with an exit code that is
+not 0, and print that text. "run PROGRAM ARGUMENT…" names a program of the project that runs the
 file (FILE), "needs NAME" a library of the project without which the experiment is left out, and "limit N" the seconds
 that it may take. Exit code 1 when a value differs or is missing, or a run does not end well.
 """
@@ -26,7 +27,7 @@ class Experiment:
 
     def __init__(self, file):
         self.file, self.name = file, file.stem
-        self.expected, self.program, self.needs, self.limit_s = {}, None, None, 100
+        self.expected, self.errors, self.program, self.needs, self.limit_s = {}, [], None, None, 100
         comment = re.search(r"<!--(.*?)-->", file.read_text(), re.S)
         expecting = False
         for line in (comment.group(1) if comment else "").splitlines():
@@ -39,6 +40,8 @@ class Experiment:
                 self.needs = words[1]
             elif words[0] == "limit" and not expecting:
                 self.limit_s = int(words[1])
+            elif words[0] == "fails" and not expecting:
+                self.errors.append(" ".join(words[1:]))
             elif words == ["expect"]:
                 expecting = True
             elif expecting:
@@ -76,7 +79,9 @@ def run(experiment, project, command):
         return [str(error)], {}, ""
     text = COLOR.sub("", done.stdout)
     values = {m.group(1): " ".join(m.group(2).split()) for m in map(RESULT.search, text.splitlines()) if m}
-    problems = [] if done.returncode == 0 else [f"ended with exit code {done.returncode}"]
+    well = done.returncode > 0 if experiment.errors else done.returncode == 0
+    problems = [] if well else [f"ended with exit code {done.returncode}"]
+    problems += [f"does not say: {error}" for error in experiment.errors if error not in text]
     for key, expected in experiment.expected.items():
         if key not in values:
             problems.append(f"{key}: {expected} is expected, nothing is printed")
@@ -93,7 +98,7 @@ def main():
     parser.add_argument("--argos3", help="runs them by this program")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--verbose", action="store_true", help="prints every value, and the output of runs that are wrong")
-    given = parser.parse_args()
+    given = parser.parse_intermixed_args()
     if bool(given.tandem) == bool(given.argos3):
         parser.error("one of --tandem and --argos3 is needed")
     project = given.project.resolve()
@@ -102,7 +107,7 @@ def main():
     unknown = set(given.names) - {e.name for e in all_of_them}
     if unknown:
         parser.error("there is no experiment " + ", ".join(sorted(unknown)))
-    chosen = [e for e in all_of_them if e.expected and (not given.names or e.name in given.names)]
+    chosen = [e for e in all_of_them if (e.expected or e.errors) and (not given.names or e.name in given.names)]
     wrong = 0
     with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
         runs = {e.name: pool.submit(run, e, project, command) for e in chosen if e.there(project / "build")}
@@ -112,7 +117,7 @@ def main():
                 continue
             problems, values, text = runs[experiment.name].result()
             wrong += bool(problems)
-            print(f"{'wrong' if problems else 'right':8}  {experiment.name} ({len(experiment.expected)} values)")
+            print(f"{'wrong' if problems else 'right':8}  {experiment.name} ({len(experiment.expected) + len(experiment.errors)} values)")
             for problem in problems:
                 print(f"            {problem}")
             if given.verbose:
