@@ -17,6 +17,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import tempfile
 
 COLOR = re.compile(r"\x1b\[[0-9;]*m")
 RESULT = re.compile(r"RESULT (\S+)[ \t]*(.*?)\s*$")
@@ -64,9 +65,9 @@ def differs(expected, printed):
         return True
 
 
-def run(experiment, project, command):
-    """Problems of one run, and its values."""
-    words = command + [str(experiment.file.relative_to(project))]
+def run(experiment, project, command, log):
+    """Problems of one run, its values, and its output; a terminal would be shown the first messages alone, `log` has all."""
+    words = command + (["--log", str(log)] if log else []) + [str(experiment.file.relative_to(project))]
     if experiment.program:
         words = [str(project / "build" / experiment.program[0])] + [
             str(experiment.file.relative_to(project)) if w == "FILE" else w for w in experiment.program[1:]]
@@ -77,7 +78,7 @@ def run(experiment, project, command):
         return [f"has not ended after {experiment.limit_s} s"], {}, ""
     except OSError as error:
         return [str(error)], {}, ""
-    text = COLOR.sub("", done.stdout)
+    text = COLOR.sub("", done.stdout + (log.read_text(errors="replace") if log and log.exists() else ""))
     values = {m.group(1): " ".join(m.group(2).split()) for m in map(RESULT.search, text.splitlines()) if m}
     well = done.returncode > 0 if experiment.errors else done.returncode == 0
     problems = [] if well else [f"ended with exit code {done.returncode}"]
@@ -103,14 +104,16 @@ def main():
         parser.error("one of --tandem and --argos3 is needed")
     project = given.project.resolve()
     command = [given.tandem, "run", "--quiet"] if given.tandem else [given.argos3, "-n", "-z", "-c"]
+    command[0] = str(pathlib.Path(command[0]).resolve()) if "/" in command[0] else command[0]
     all_of_them = [Experiment(f) for f in sorted((project / "experiments").glob("*.argos"))]
     unknown = set(given.names) - {e.name for e in all_of_them}
     if unknown:
         parser.error("there is no experiment " + ", ".join(sorted(unknown)))
     chosen = [e for e in all_of_them if (e.expected or e.errors) and (not given.names or e.name in given.names)]
     wrong = 0
-    with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
-        runs = {e.name: pool.submit(run, e, project, command) for e in chosen if e.there(project / "build")}
+    with tempfile.TemporaryDirectory() as logs, concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
+        runs = {e.name: pool.submit(run, e, project, command, given.tandem and pathlib.Path(logs) / e.name)
+                for e in chosen if e.there(project / "build")}
         for experiment in chosen:
             if experiment.name not in runs:
                 print(f"left out  {experiment.name}: libcorpus_{experiment.needs}.so was not built")

@@ -13,6 +13,7 @@ std::vector<CVector2> CSwarmLoop::Positions() {
    for (CSpace::TMapPerType::iterator it = tFootBots.begin(); it != tFootBots.end(); ++it) {
       const CVector3& cPosition = any_cast<CFootBotEntity*>(it->second)->GetEmbodiedEntity().GetOriginAnchor().Position;
       vecPositions.push_back(CVector2(cPosition.GetX(), cPosition.GetY()));
+      LOG << "RESULT " << it->first << ".at " << cPosition.GetX() << " " << cPosition.GetY() << std::endl;
    }
    return vecPositions;
 }
