@@ -67,8 +67,7 @@ local function report()
          distance, angle = blob.distance, blob.angle
       end
    end
-   tell("red", red)
-   if red > 0 then tell("red_near", math.abs(distance - 100) < 10 and math.abs(angle) < 0.1) end
+   if red > 0 then tell("red_near", math.abs(distance - 60) < 12 and math.abs(angle + math.pi / 2) < 0.3) end
    tell("long_scans", #robot.distance_scanner.long_range > 0)
    tell("short_scans", type(robot.distance_scanner.short_range[1].distance))
    tell("turret", type(robot.turret.rotation))

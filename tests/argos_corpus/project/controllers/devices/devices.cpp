@@ -135,7 +135,7 @@ void CDevices::TellBlobs() {
          cPlace += CVector2(sReadings.BlobList[i]->Distance, sReadings.BlobList[i]->Angle);
       }
    }
-   Tell("blobs.red", unRed);
+   Tell("blobs.some", unRed > 0);
    if (unRed > 0) {
       cPlace /= unRed;
       Tell("blobs.cm", cPlace.Length());
@@ -165,7 +165,8 @@ void CDevices::TellRest() {
    if (m_pcPosition != NULL) {
       CRadians cZ, cY, cX;
       m_pcPosition->GetReading().Orientation.ToEulerAngles(cZ, cY, cX);
-      Tell("position", m_pcPosition->GetReading().Position);
+      const CVector3& cPosition = m_pcPosition->GetReading().Position;
+      Tell("position_cm", ToString(Round(cPosition.GetX() * 100.0)) + " " + ToString(Round(cPosition.GetY() * 100.0)));
       Tell("yaw", ToDegrees(cZ).GetValue());
    }
    if (m_pcBattery != NULL) {

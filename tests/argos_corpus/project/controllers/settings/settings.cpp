@@ -95,7 +95,7 @@ void CSettings::Errors(TConfigurationNode& t_node) {
    }
    try {
       Real fValue;
-      GetNodeAttribute(t_node, "name", fValue);
+      GetNodeAttribute(t_node, "lazy", fValue);
       Tell("no_number", "read");
    } catch (std::exception&) {
       Tell("no_number", "exception");
