@@ -7,7 +7,7 @@
 The first comment of an experiment has lines after "expect": a key and a value, or numbers with "+- TOLERANCE". Runs print
 lines "RESULT key value"; a key's last value counts. "fails TEXT" says instead that the run must end with an exit code that is
 not 0, and print that text. "run PROGRAM ARGUMENT…" names a program of the project that runs the
-file (FILE), "needs NAME" a library of the project without which the experiment is left out, and "limit N" the seconds
+file (FILE), "tandem OPTION…" options that Tandem alone needs, "needs NAME" a library of the project without which the experiment is left out, and "limit N" the seconds
 that it may take. Exit code 1 when a value differs or is missing, or a run does not end well.
 """
 import argparse
@@ -28,7 +28,7 @@ class Experiment:
 
     def __init__(self, file):
         self.file, self.name = file, file.stem
-        self.expected, self.errors, self.program, self.needs, self.limit_s = {}, [], None, None, 100
+        self.expected, self.errors, self.program, self.options, self.needs, self.limit_s = {}, [], None, [], None, 100
         comment = re.search(r"<!--(.*?)-->", file.read_text(), re.S)
         expecting = False
         for line in (comment.group(1) if comment else "").splitlines():
@@ -37,6 +37,8 @@ class Experiment:
                 continue
             if words[0] == "run" and not expecting:
                 self.program = words[1:]
+            elif words[0] == "tandem" and not expecting:
+                self.options = words[1:]
             elif words[0] == "needs" and not expecting:
                 self.needs = words[1]
             elif words[0] == "limit" and not expecting:
@@ -67,7 +69,7 @@ def differs(expected, printed):
 
 def run(experiment, project, command, log):
     """Problems of one run, its values, and its output; a terminal would be shown the first messages alone, `log` has all."""
-    words = command + (["--log", str(log)] if log else []) + [str(experiment.file.relative_to(project))]
+    words = command + (["--log", str(log), *experiment.options] if log else []) + [str(experiment.file.relative_to(project))]
     if experiment.program:
         words = [str(project / "build" / experiment.program[0])] + [
             str(experiment.file.relative_to(project)) if w == "FILE" else w for w in experiment.program[1:]]
