@@ -38,7 +38,7 @@ class Experiment:
             if words[0] == "run" and not expecting:
                 self.program = words[1:]
             elif words[0] == "tandem" and not expecting:
-                self.options = words[1:]
+                self.options = ["--" + w for w in words[1:]]  # XML permits no -- in a comment
             elif words[0] == "needs" and not expecting:
                 self.needs = words[1]
             elif words[0] == "limit" and not expecting:
