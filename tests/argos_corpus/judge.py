@@ -20,6 +20,7 @@ import sys
 import tempfile
 
 COLOR = re.compile(r"\x1b\[[0-9;]*m")
+MOST = 8  # problems of one experiment that are told
 RESULT = re.compile(r"RESULT (\S+)[ \t]*(.*?)\s*$")
 
 
@@ -123,8 +124,11 @@ def main():
             problems, values, text = runs[experiment.name].result()
             wrong += bool(problems)
             print(f"{'wrong' if problems else 'right':8}  {experiment.name} ({len(experiment.expected) + len(experiment.errors)} values)")
-            for problem in problems:
+            errors = [line.strip() for line in text.splitlines() if re.search(r"\berror\b|\[FATAL\]", line)]
+            for problem in problems[:MOST] + ([f"and {len(problems) - MOST} more"] if len(problems) > MOST else []):
                 print(f"            {problem}")
+            for error in errors[:3] if problems and "ended" in problems[0] else []:
+                print(f"            it says: {error}")
             if given.verbose:
                 print("".join(f"            {k} {v}\n" for k, v in values.items()), end="")
                 if problems:
