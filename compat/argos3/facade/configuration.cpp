@@ -57,11 +57,12 @@ struct detail::Data {
   Element* next(const std::string& wanted) const {
     return parent == nullptr ? nullptr : find(parent->children, wanted, after(parent->children, node));
   }
-  void fill(const tandem::hal::Element& from) {
+  /// `lines`: those of `from` are lines of a file.
+  void fill(const tandem::hal::Element& from, bool lines) {
     name = from.name;
-    line = from.line;
+    line = lines ? from.line : 0;
     for (const auto& a : from.attributes) add(a.name, a.value);
-    for (const auto& child : from.children) of(add(std::make_unique<Element>(child.name))).fill(child);
+    for (const auto& child : from.children) of(add(std::make_unique<Element>(child.name))).fill(child, lines);
   }
   tandem::hal::Element plain() const {
     tandem::hal::Element out;
@@ -269,7 +270,7 @@ void fill(Data& document, const std::optional<tandem::hal::Element>& root, const
     for (const tandem::hal::Problem& problem : problems) all += (all.empty() ? "" : "\n") + to_text(problem);
     throw Exception(all);
   }
-  Data::of(document.add(std::make_unique<Element>(root->name))).fill(*root);
+  Data::of(document.add(std::make_unique<Element>(root->name))).fill(*root, true);
 }
 }  // namespace
 
@@ -302,7 +303,7 @@ namespace tandem::compat::argos3 {
 
 std::unique_ptr<ticpp::Element> to_node(const hal::Element& element) {
   auto node = std::make_unique<ticpp::Element>(element.name);
-  ticpp::detail::Data::of(*node).fill(element);
+  ticpp::detail::Data::of(*node).fill(element, false);
   return node;
 }
 

@@ -33,7 +33,7 @@ void tell(bool error, std::string_view text) {
   if (context != nullptr)
     context->tell(error, text);
   else
-    std::fprintf(stderr, "%.*s\n", static_cast<int>(text.size()), text.data());
+    std::fprintf(error ? stderr : stdout, "%.*s\n", static_cast<int>(text.size()), text.data());
 }
 
 /// Text of one thread that has not been told. Whole lines are told when something is flushed or a line ends.
