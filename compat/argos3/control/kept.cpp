@@ -98,7 +98,12 @@ void Kept::reset(hal::Robot& robot) {
 }
 
 void Kept::tell(bool error, std::string_view text) {
-  error ? log_.error(text) : log_.info(text);
+  if (!error)
+    log_.info(text);
+  else if (ended_)
+    log_.warning(text);  // an error at its end would be a failure of the run
+  else
+    log_.error(text);
 }
 
 }  // namespace tandem::compat::argos3

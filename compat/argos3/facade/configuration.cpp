@@ -16,6 +16,12 @@ struct detail::Data {
   Data* parent = nullptr;
   Node* node = nullptr;  // in its parent's list; null when it has none
 
+  Data() = default;
+  Data(const Data&) = delete;
+  Data& operator=(const Data&) = delete;
+  ~Data() {  // copies of children may live on
+    for (const auto& child : children) of(*child).parent = nullptr;
+  }
   static Data& of(const Node& node) { return *node.data_; }
 
   Element& add(std::unique_ptr<Element> child) {
@@ -51,11 +57,12 @@ struct detail::Data {
   Element* next(const std::string& wanted) const {
     return parent == nullptr ? nullptr : find(parent->children, wanted, after(parent->children, node));
   }
-  void fill(const tandem::hal::Element& from) {
+  /// `lines`: those of `from` are lines of a file.
+  void fill(const tandem::hal::Element& from, bool lines) {
     name = from.name;
-    line = from.line;
+    line = lines ? from.line : 0;
     for (const auto& a : from.attributes) add(a.name, a.value);
-    for (const auto& child : from.children) of(add(std::make_unique<Element>(child.name))).fill(child);
+    for (const auto& child : from.children) of(add(std::make_unique<Element>(child.name))).fill(child, lines);
   }
   tandem::hal::Element plain() const {
     tandem::hal::Element out;
@@ -126,6 +133,7 @@ int Node::Row() const {
   return data_->line;
 }
 void Node::Clear() {
+  for (const auto& child : data_->children) Data::of(*child).parent = nullptr;
   data_->children.clear();
 }
 
@@ -186,7 +194,11 @@ Node* Node::LinkEndChild(Node* child) {
   return &data_->add(std::unique_ptr<Element>(element));
 }
 void Node::RemoveChild(Node* child) {
-  std::erase_if(data_->children, [&](const auto& one) { return one.get() == child; });
+  std::erase_if(data_->children, [&](const auto& one) {
+    if (one.get() != child) return false;
+    Data::of(*one).parent = nullptr;
+    return true;
+  });
 }
 Element* Node::ToElement() {
   return checked(dynamic_cast<Element*>(this), true, *this, "form as an element: it is a document");
@@ -258,8 +270,7 @@ void fill(Data& document, const std::optional<tandem::hal::Element>& root, const
     for (const tandem::hal::Problem& problem : problems) all += (all.empty() ? "" : "\n") + to_text(problem);
     throw Exception(all);
   }
-  document.children.clear();
-  Data::of(document.add(std::make_unique<Element>(root->name))).fill(*root);
+  Data::of(document.add(std::make_unique<Element>(root->name))).fill(*root, true);
 }
 }  // namespace
 
@@ -268,10 +279,12 @@ void Document::LoadFile() {
 }
 void Document::LoadFile(const std::string& file) {
   file_ = file;
+  Clear();
   tandem::hal::Problems problems;
   fill(*data_, tandem::hal::read_xml_file(file, problems), problems);
 }
 void Document::Parse(const std::string& xml) {
+  Clear();
   tandem::hal::Problems problems;
   fill(*data_, tandem::hal::read_xml_text(xml, "the text", problems), problems);
 }
@@ -290,7 +303,7 @@ namespace tandem::compat::argos3 {
 
 std::unique_ptr<ticpp::Element> to_node(const hal::Element& element) {
   auto node = std::make_unique<ticpp::Element>(element.name);
-  ticpp::detail::Data::of(*node).fill(element);
+  ticpp::detail::Data::of(*node).fill(element, false);
   return node;
 }
 

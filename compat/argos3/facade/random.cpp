@@ -75,7 +75,8 @@ CRandom::CRNG* Context::make_generator(std::uint64_t category_seed) {
 }
 
 void set_run_seed(std::uint64_t seed) {
-  CRandom::GetCategory("argos").SetSeed(argos::TandemRandom::shown(seed));
+  const std::lock_guard lock(registry().mutex);
+  registry().categories.at("argos")->SetSeed(argos::TandemRandom::shown(seed));
 }
 
 }  // namespace tandem::compat::argos3
