@@ -53,8 +53,8 @@ TEST_F(ArgosCorpusScript, SaysWhichRunAndWhyTheOthersDoNot) {
   folder_.write("b/other.xml", "<notes/>");
   ASSERT_EQ(call("--json all.json --verbose"), 1) << log();
   EXPECT_THAT(log(), AllOf(HasSubstr("5 experiments of 2 projects: 2 run 1 s, 0 load and do not run, 3 do not load"),
-                           HasSubstr("1        1  the script is not there"), HasSubstr("kilobot"),
-                           Not(HasSubstr("other.xml"))));
+                           HasSubstr("1        1  the script is not there"), HasSubstr("<arena> cannot hold"),
+                           HasSubstr("kilobot"), Not(HasSubstr("other.xml"))));
   const std::string json = text_of(folder_.path() / "all.json");
   const auto of = [&](const std::string& file, const char* key) {
     const std::size_t at = json.find("\"file\": \"" + file + "\"");
