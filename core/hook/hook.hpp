@@ -61,8 +61,8 @@ class Hook {
 
   virtual void before_run(HookContext&) {}
   virtual void before_step(HookContext&) {}
-  /// Bodies have moved, and sensors and controllers have their turn next: they see what is changed here. Robots that are
-  /// added here sense and step in this tick.
+  /// Bodies have moved, and sensors and controllers have their turn next: they see what is changed here. Robots that
+  /// are added here sense and step in this tick.
   virtual void before_sense(HookContext&) {}
   virtual void after_step(HookContext&) {}
   /// Asked after every step; true ends the run.

@@ -410,10 +410,10 @@ void World::Impl::make_hooks(Problems& problems) {
     if (type.ok())
       make_hook(hooks.size() - 1, problems);
     else
-      problems.push_back({scenario.file, config.line,
-                          (config.optional ? "user_functions are left out: " : "loop_functions: ") +
-                              type.error().message,
-                          config.optional});
+      problems.push_back(
+          {scenario.file, config.line,
+           (config.optional ? "user_functions are left out: " : "loop_functions: ") + type.error().message,
+           config.optional});
   }
 }
 

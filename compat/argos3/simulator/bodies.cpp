@@ -1,10 +1,9 @@
 // Bodies: where they are, what they touch.
 #include <algorithm>
-#include <cmath>
-
 #include <argos3/core/simulator/entity/composable_entity.h>
 #include <argos3/core/simulator/entity/embodied_entity.h>
 #include <argos3/core/simulator/space/space.h>
+#include <cmath>
 
 #include "compat/argos3/simulator/session.hpp"
 
@@ -22,8 +21,7 @@ CEmbodiedEntity::CEmbodiedEntity(CComposableEntity* pc_parent) : CEmbodiedEntity
 CEmbodiedEntity::CEmbodiedEntity(CComposableEntity* pc_parent, const std::string& str_id, const CVector3& c_position,
                                  const CQuaternion& c_orientation, bool b_movable)
     : CEntity(pc_parent, str_id),
-      m_psOriginAnchor(
-          new SAnchor(*this, "origin", 0, CVector3(), CQuaternion(), c_position, c_orientation)),
+      m_psOriginAnchor(new SAnchor(*this, "origin", 0, CVector3(), CQuaternion(), c_position, c_orientation)),
       m_cInitPosition(c_position),
       m_cInitOrientation(c_orientation),
       m_bMovable(b_movable) {
@@ -62,8 +60,8 @@ void CEmbodiedEntity::SetMovable(bool b_movable) {
 SAnchor& CEmbodiedEntity::AddAnchor(const std::string& str_id, const CVector3& c_offset_position,
                                     const CQuaternion& c_offset_orientation) {
   if (m_mapAnchors.count(str_id) != 0) refuse(owner_of(*this), "it has an anchor \"" + str_id + "\" already");
-  auto* const anchor = new SAnchor(*this, str_id, static_cast<UInt32>(m_mapAnchors.size()), c_offset_position,
-                                   c_offset_orientation);
+  auto* const anchor =
+      new SAnchor(*this, str_id, static_cast<UInt32>(m_mapAnchors.size()), c_offset_position, c_offset_orientation);
   m_mapAnchors.emplace(str_id, anchor);
   Follow();
   ReadWorld();

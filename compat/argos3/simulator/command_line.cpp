@@ -1,14 +1,13 @@
 // Arguments of programs, and of the command `argos3`.
 #include <algorithm>
-#include <cstdlib>
-#include <utility>
-
 #include <argos3/core/config.h>
 #include <argos3/core/simulator/argos_command_line_arg_parser.h>
 #include <argos3/core/simulator/query_plugins.h>
 #include <argos3/core/simulator/simulator.h>
 #include <argos3/core/utility/configuration/argos_exception.h>
 #include <argos3/core/utility/configuration/command_line_arg_parser.h>
+#include <cstdlib>
+#include <utility>
 
 namespace argos {
 
@@ -68,10 +67,10 @@ CARGoSCommandLineArgParser::~CARGoSCommandLineArgParser() {}
 
 void CARGoSCommandLineArgParser::Parse(SInt32 count, char** values) {
   CCommandLineArgParser::Parse(count, values);
-  const std::vector<std::pair<bool, EAction> > asked = {{!m_strExperimentConfigFile.empty(), ACTION_RUN_EXPERIMENT},
-                                                        {!m_strQuery.empty(), ACTION_QUERY},
-                                                        {m_bHelpWanted, ACTION_SHOW_HELP},
-                                                        {m_bVersionWanted, ACTION_SHOW_VERSION}};
+  const std::vector<std::pair<bool, EAction>> asked = {{!m_strExperimentConfigFile.empty(), ACTION_RUN_EXPERIMENT},
+                                                       {!m_strQuery.empty(), ACTION_QUERY},
+                                                       {m_bHelpWanted, ACTION_SHOW_HELP},
+                                                       {m_bVersionWanted, ACTION_SHOW_VERSION}};
   if (std::count_if(asked.begin(), asked.end(), [](const auto& one) { return one.first; }) != 1)
     THROW_ARGOSEXCEPTION("give one of --config-file FILE, --query WHAT, --help, --version")
   for (const auto& one : asked) {

@@ -1,5 +1,4 @@
 #include <argos3/core/utility/plugins/dynamic_loading.h>
-
 #include <filesystem>
 #include <mutex>
 #include <sstream>

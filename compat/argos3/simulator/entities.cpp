@@ -1,6 +1,5 @@
 // Entities and their parts that are not of one kind of thing.
 #include <algorithm>
-
 #include <argos3/core/simulator/entity/composable_entity.h>
 #include <argos3/core/simulator/entity/controllable_entity.h>
 #include <argos3/core/simulator/entity/floor_entity.h>
@@ -60,8 +59,8 @@ CAny CEntity::AsAny() {
   return CAny(this);
 }
 void CEntity::JoinWorld() {
-  refuse(m_strId, "an entity of type \"" + GetTypeDescription() +
-                      "\" cannot be added; robots, boxes, cylinders and lights can");
+  refuse(m_strId,
+         "an entity of type \"" + GetTypeDescription() + "\" cannot be added; robots, boxes, cylinders and lights can");
 }
 void CEntity::LeaveWorld() {}
 bool CEntity::FindInWorld() {

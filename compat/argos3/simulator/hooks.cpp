@@ -132,7 +132,8 @@ class UserFunctions final : public ArgosHook {
   void controls(core::HookContext& c, hal::Controls& controls) override {
     if (controls.text("selected", selected_, "Id of the entity that user functions take as selected."))
       Session::get().select(selected_);
-    if (controls.text("keys", keys_, "Keys that are held down, for user functions: \"ij\".")) Session::get().set_keys(keys_);
+    if (controls.text("keys", keys_, "Keys that are held down, for user functions: \"ij\"."))
+      Session::get().set_keys(keys_);
     ArgosHook::controls(c, controls);
   }
 

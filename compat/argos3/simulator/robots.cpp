@@ -1,6 +1,5 @@
 // Robots and their devices.
 #include <algorithm>
-
 #include <argos3/plugins/robots/e-puck/simulator/epuck_entity.h>
 #include <argos3/plugins/robots/eye-bot/simulator/eyebot_entity.h>
 #include <argos3/plugins/robots/foot-bot/simulator/footbot_entity.h>
@@ -47,7 +46,8 @@ const CColor& CLEDEntity::GetColor() const {
   const Body body = body_of(*m_pcOwner);
   if (body.Kind == Body::NONE) return m_cColor;
   const std::vector<Led> leds = world().leds(body);
-  if (m_unNumber < leds.size()) m_cColor.Set(leds[m_unNumber].color.r, leds[m_unNumber].color.g, leds[m_unNumber].color.b);
+  if (m_unNumber < leds.size())
+    m_cColor.Set(leds[m_unNumber].color.r, leds[m_unNumber].color.g, leds[m_unNumber].color.b);
   return m_cColor;
 }
 void CLEDEntity::SetColor(const CColor& color) {
@@ -82,7 +82,8 @@ void CLEDEquippedEntity::AddLED(const CVector3& offset, SAnchor& anchor, const C
 void CLEDEquippedEntity::FindLEDs() {
   const Body body = body_of(*this);
   if (!m_tLEDs.empty() || body.Kind == Body::NONE) return;
-  SAnchor& anchor = static_cast<CComposableEntity&>(GetRootEntity()).GetComponent<CEmbodiedEntity>("body").GetOriginAnchor();
+  SAnchor& anchor =
+      static_cast<CComposableEntity&>(GetRootEntity()).GetComponent<CEmbodiedEntity>("body").GetOriginAnchor();
   for (const Led& found : world().leds(body)) {
     const CVector3 offset(found.x_m, found.y_m, found.z_m);
     auto* const led = new CLEDEntity(this, "led_" + std::to_string(m_tLEDs.size()), offset,
@@ -144,7 +145,8 @@ void CRABEquippedEntity::SetData(const CByteArray& data) {
   std::vector<std::uint8_t> bytes(data.Size());
   for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = data[i];
   if (!world().set_message(body_of(*this), bytes))
-    refuse(GetRootEntity().GetId(), "its configuration lists no actuator range_and_bearing, or the message is too long");
+    refuse(GetRootEntity().GetId(),
+           "its configuration lists no actuator range_and_bearing, or the message is too long");
 }
 void CRABEquippedEntity::ClearData() {
   world().set_message(body_of(*this), {});
@@ -253,8 +255,9 @@ CAny CRobotEntity::AsAny() {
 }
 void CRobotEntity::JoinWorld() {
   Body added;
-  const std::string why = world().add_robot({{}, GetId(), m_strKind, m_pcController->GetControllerId()},
-                                            place_of(m_pcBody->GetInitPosition(), m_pcBody->GetInitOrientation()), added);
+  const std::string why =
+      world().add_robot({{}, GetId(), m_strKind, m_pcController->GetControllerId()},
+                        place_of(m_pcBody->GetInitPosition(), m_pcBody->GetInitOrientation()), added);
   if (!why.empty()) refuse(GetId(), why);
   m_pcBody->SetBody(added);
   m_strIdInWorld = world().id_in_world(added);

@@ -25,9 +25,7 @@ Context& loop_context() {
 
 }  // namespace
 
-void refuse(const std::string& who, const std::string& why) {
-  THROW_ARGOSEXCEPTION("\"" << who << "\": " << why)
-}
+void refuse(const std::string& who, const std::string& why){THROW_ARGOSEXCEPTION("\"" << who << "\": " << why)}
 
 argos::CVector3 vector_of(const Place& place) {
   return {place.x_m, place.y_m, place.z_m};

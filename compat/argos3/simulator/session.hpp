@@ -1,14 +1,13 @@
 // The one run of ARGoS classes in this process: its world, its entities, its loop functions and user functions.
 #pragma once
+#include <argos3/core/simulator/loop_functions.h>
+#include <argos3/core/utility/plugins/factory.h>
+#include <argos3/plugins/simulator/visualizations/qt-opengl/qtopengl_user_functions.h>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <argos3/core/simulator/loop_functions.h>
-#include <argos3/core/utility/plugins/factory.h>
-#include <argos3/plugins/simulator/visualizations/qt-opengl/qtopengl_user_functions.h>
 
 #include "compat/argos3/simulator/world_door.hpp"
 
@@ -45,7 +44,9 @@ class Session {
   /// The run's, or ones that do nothing.
   ::argos::CLoopFunctions& loop_functions();
   bool has_loop_functions() const noexcept { return loop_functions_ != nullptr; }
-  const std::vector<std::unique_ptr<::argos::CQTOpenGLUserFunctions>>& user_functions() const { return user_functions_; }
+  const std::vector<std::unique_ptr<::argos::CQTOpenGLUserFunctions>>& user_functions() const {
+    return user_functions_;
+  }
   /// Draws by all user functions.
   void draw();
   /// Keys that people hold down, as a text, and the id of the entity that they have selected.
@@ -58,7 +59,7 @@ class Session {
   /// A program of one's own steps the world, and asks by itself whether the experiment is finished.
   bool own_program = false;
   std::optional<std::uint32_t> wanted_seed;
-  std::string file;  ///< of the experiment
+  std::string file;      ///< of the experiment
   bool painted = false;  ///< loop functions paint the floor
 
  private:

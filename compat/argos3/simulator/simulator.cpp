@@ -1,10 +1,5 @@
 // CSimulator: of a run that hooks take part in, or of one that a program of one's own steps.
-#include <dlfcn.h>
-
 #include <algorithm>
-#include <cstdlib>
-#include <memory>
-
 #include <argos3/core/simulator/loop_functions.h>
 #include <argos3/core/simulator/query_plugins.h>
 #include <argos3/core/simulator/simulator.h>
@@ -12,6 +7,9 @@
 #include <argos3/core/simulator/visualization/visualization.h>
 #include <argos3/plugins/simulator/media/led_medium.h>
 #include <argos3/plugins/simulator/media/rab_medium.h>
+#include <cstdlib>
+#include <dlfcn.h>
+#include <memory>
 
 #include "compat/argos3/facade/library.hpp"
 #include "compat/argos3/simulator/own_run.hpp"
@@ -28,9 +26,9 @@ struct CSimulator::SState {
   CVisualization View;
   ticpp::Document Document;
   std::string DocumentFile;  ///< that it was read from
-  std::vector<std::unique_ptr<CPhysicsEngine> > OwnedEngines;
+  std::vector<std::unique_ptr<CPhysicsEngine>> OwnedEngines;
   CPhysicsEngine::TVector Engines;
-  std::vector<std::unique_ptr<CMedium> > OwnedMedia;
+  std::vector<std::unique_ptr<CMedium>> OwnedMedia;
   CMedium::TVector Media;
   CRandom::CRNG* Random = nullptr;
   std::unique_ptr<compat::OwnRun> Own;
@@ -184,8 +182,9 @@ namespace {
 /// The run that this program steps.
 compat::OwnRun& own(const std::unique_ptr<compat::OwnRun>& run) {
   if (run == nullptr)
-    THROW_ARGOSEXCEPTION("this program steps no experiment: call LoadExperiment first; in `tandem run` the run steps by "
-                         "itself")
+    THROW_ARGOSEXCEPTION(
+        "this program steps no experiment: call LoadExperiment first; in `tandem run` the run steps by "
+        "itself")
   return *run;
 }
 
@@ -199,8 +198,9 @@ void CSimulator::LoadExperiment(bool) {
   if (m_psState->Own != nullptr) THROW_ARGOSEXCEPTION("an experiment is loaded already: call Destroy first")
   const auto open = reinterpret_cast<compat::OpenOwnRun>(dlsym(RTLD_DEFAULT, "tandem_argos3_open_run"));
   if (open == nullptr || Session::get().entered())
-    THROW_ARGOSEXCEPTION("LoadExperiment is for programs with a main of their own, linked with argos3core_simulator; "
-                         "here the run has its experiment already")
+    THROW_ARGOSEXCEPTION(
+        "LoadExperiment is for programs with a main of their own, linked with argos3core_simulator; "
+        "here the run has its experiment already")
   Session& session = Session::get();
   session.own_program = true;
   session.file = m_psState->File;

@@ -1,10 +1,5 @@
 // The space: entities of the world that runs.
 #include <algorithm>
-#include <memory>
-#include <mutex>
-#include <regex>
-#include <set>
-
 #include <argos3/core/simulator/entity/floor_entity.h>
 #include <argos3/core/simulator/space/space.h>
 #include <argos3/plugins/robots/e-puck/simulator/epuck_entity.h>
@@ -13,6 +8,10 @@
 #include <argos3/plugins/simulator/entities/box_entity.h>
 #include <argos3/plugins/simulator/entities/cylinder_entity.h>
 #include <argos3/plugins/simulator/entities/light_entity.h>
+#include <memory>
+#include <mutex>
+#include <regex>
+#include <set>
 
 #include "compat/argos3/facade/controllers.hpp"
 #include "compat/argos3/simulator/session.hpp"
@@ -35,10 +34,10 @@ struct CSpace::SState {
   // Removed in this phase: loops over the maps and vectors may stand at them.
   std::vector<CEntity*> RemovedRoots;
   std::set<const CEntity*> Removed;
-  std::map<std::string, std::vector<std::string> > RemovedKeys;  // by type
+  std::map<std::string, std::vector<std::string>> RemovedKeys;  // by type
   bool VectorsHoldRemoved = false;
-  bool IsFilled = false;            ///< entities are made when they are asked for
-  std::recursive_mutex Filling;     ///< controllers may ask, on any thread
+  bool IsFilled = false;                            ///< entities are made when they are asked for
+  std::recursive_mutex Filling;                     ///< controllers may ask, on any thread
   std::set<std::string> FromFile, FromFileRemoved;  // ids
   mutable CVector3 Size, Center;
   mutable CRange<CVector3> Limits;
@@ -146,8 +145,9 @@ const CSpace::TMapPerType& CSpace::GetEntitiesByType(const std::string& type) co
 
 CFloorEntity& CSpace::GetFloorEntity() {
   if (Filled().Floor == nullptr)
-    THROW_ARGOSEXCEPTION("the arena has no floor: add <floor id=\"floor\" source=\"loop_functions\" "
-                         "pixels_per_meter=\"50\"/> to <arena>")
+    THROW_ARGOSEXCEPTION(
+        "the arena has no floor: add <floor id=\"floor\" source=\"loop_functions\" "
+        "pixels_per_meter=\"50\"/> to <arena>")
   return *Filled().Floor;
 }
 
@@ -251,8 +251,8 @@ void CSpaceAccess::Fill(CSpace& space) {
   for (const compat::WorldDoor::Named& object : world().objects()) enter(object);
   for (const auto& lamp : world().lamps()) {
     const compat::Lamp& l = lamp.second;
-    auto* const light = new CLightEntity(l.id, CVector3(l.x_m, l.y_m, l.z_m), CColor(l.color.r, l.color.g, l.color.b),
-                                         l.intensity);
+    auto* const light =
+        new CLightEntity(l.id, CVector3(l.x_m, l.y_m, l.z_m), CColor(l.color.r, l.color.g, l.color.b), l.intensity);
     s.Enter(*light);
     light->FindInWorld();
     s.FromFile.insert(l.id);

@@ -22,7 +22,8 @@ std::vector<Led> leds_of(CLEDEquippedEntity& leds) {
   std::vector<Led> all;
   for (const CLEDEquippedEntity::SActuator* const one : leds.GetLEDs()) {
     const CColor& c = one->LED.GetColor();
-    all.push_back({one->Offset.GetX(), one->Offset.GetY(), one->Offset.GetZ(), {c.GetRed(), c.GetGreen(), c.GetBlue()}});
+    all.push_back(
+        {one->Offset.GetX(), one->Offset.GetY(), one->Offset.GetZ(), {c.GetRed(), c.GetGreen(), c.GetBlue()}});
   }
   return all;
 }
@@ -34,8 +35,8 @@ bool in_world(const CEmbodiedEntity& body) {
 void join(const std::string& id, CEmbodiedEntity& body, CLEDEquippedEntity& leds, Form form) {
   Body added;
   form.movable = body.IsMovable();
-  const std::string why = world().add_object(id, form, place_of(body.GetInitPosition(), body.GetInitOrientation()),
-                                             leds_of(leds), added);
+  const std::string why =
+      world().add_object(id, form, place_of(body.GetInitPosition(), body.GetInitOrientation()), leds_of(leds), added);
   if (!why.empty()) refuse(id, why);
   body.SetBody(added);
 }
@@ -188,7 +189,11 @@ namespace {
 Lamp lamp_of(const CLightEntity& light) {
   const CVector3& p = light.GetPosition();
   const CColor& c = light.GetColor();
-  return {light.GetId(), p.GetX(), p.GetY(), p.GetZ(), light.IsEnabled() ? light.GetIntensity() : 0.0,
+  return {light.GetId(),
+          p.GetX(),
+          p.GetY(),
+          p.GetZ(),
+          light.IsEnabled() ? light.GetIntensity() : 0.0,
           {c.GetRed(), c.GetGreen(), c.GetBlue()}};
 }
 

@@ -1,18 +1,17 @@
 // Drawings of user functions, in W.
 #include <algorithm>
-#include <cctype>
-#include <cmath>
-
 #include <argos3/core/simulator/entity/composable_entity.h>
 #include <argos3/core/simulator/space/space.h>
 #include <argos3/plugins/simulator/visualizations/qt-opengl/qtopengl_user_functions.h>
+#include <cctype>
+#include <cmath>
 
 #include "compat/argos3/simulator/session.hpp"
 
 QColor::QColor(Qt::GlobalColor color) : red_(0), green_(0), blue_(0), alpha_(255) {
-  static const unsigned char kRgb[][3] = {{255, 255, 255}, {0, 0, 0},       {255, 0, 0},   {0, 255, 0},
-                                          {0, 0, 255},     {0, 255, 255},   {255, 0, 255}, {255, 255, 0},
-                                          {160, 160, 160}, {128, 0, 0},     {0, 128, 0},   {0, 0, 128}};
+  static const unsigned char kRgb[][3] = {{255, 255, 255}, {0, 0, 0},     {255, 0, 0},   {0, 255, 0},
+                                          {0, 0, 255},     {0, 255, 255}, {255, 0, 255}, {255, 255, 0},
+                                          {160, 160, 160}, {128, 0, 0},   {0, 128, 0},   {0, 0, 128}};
   red_ = kRgb[color][0];
   green_ = kRgb[color][1];
   blue_ = kRgb[color][2];

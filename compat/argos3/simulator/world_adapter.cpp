@@ -138,8 +138,10 @@ std::vector<WorldDoor::Named> WorldAdapter::objects() const {
   const std::vector<core::Object>& objects = space_->objects();
   for (std::size_t i = 0; i < objects.size(); ++i) {
     if (!objects[i].alive) continue;
-    all.push_back({body_of(space_->object(i)), objects[i].id,
-                   objects[i].kind == core::Object::Kind::Box ? "box" : "cylinder", {}});
+    all.push_back({body_of(space_->object(i)),
+                   objects[i].id,
+                   objects[i].kind == core::Object::Kind::Box ? "box" : "cylinder",
+                   {}});
   }
   return all;
 }
@@ -169,8 +171,13 @@ Place WorldAdapter::place(const Body& body) const {
   if (!core::leans(q)) return place_at(o.x_m, o.y_m, o.z_low_m, o.cos_h, o.sin_h);
   const core::Attitude a = core::attitude_of(o, q);
   const double half_m = 0.5 * (o.z_high_m - o.z_low_m);
-  return {a.middle_m[0] - half_m * a.axes[2][0], a.middle_m[1] - half_m * a.axes[2][1],
-          a.middle_m[2] - half_m * a.axes[2][2], q[0], q[1], q[2], q[3]};
+  return {a.middle_m[0] - half_m * a.axes[2][0],
+          a.middle_m[1] - half_m * a.axes[2][1],
+          a.middle_m[2] - half_m * a.axes[2][2],
+          q[0],
+          q[1],
+          q[2],
+          q[3]};
 }
 
 Form WorldAdapter::form(const Body& body) const {
@@ -182,7 +189,12 @@ Form WorldAdapter::form(const Body& body) const {
     return form;
   }
   const core::Object& o = space_->objects()[body.Index];
-  return {o.kind == core::Object::Kind::Box, o.movable, o.half_x_m, o.half_y_m, o.radius_m, o.z_high_m - o.z_low_m,
+  return {o.kind == core::Object::Kind::Box,
+          o.movable,
+          o.half_x_m,
+          o.half_y_m,
+          o.radius_m,
+          o.z_high_m - o.z_low_m,
           o.mass_kg};
 }
 

@@ -1,12 +1,11 @@
 // Interface between ARGoS' simulator classes and the world that runs: plain data, no headers of Tandem.
 #pragma once
+#include <argos3/core/simulator/entity/embodied_entity.h>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
-
-#include <argos3/core/simulator/entity/embodied_entity.h>
 
 namespace tandem::compat::argos3 {
 

@@ -32,10 +32,11 @@ class OldCode : public testing::Test {
   static void SetUpTestSuite() {
     folder_ = new Folder;
     fs::copy(kProject, folder_->path(), fs::copy_options::recursive);
-    built_ = shell("export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1; cmake -S . -B build -DCMAKE_BUILD_TYPE=Debug "
-                   "-DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCMAKE_PREFIX_PATH='" +
-                       kPrefix + "' -DCMAKE_CXX_COMPILER_LAUNCHER=$(command -v ccache) && cmake --build build -j 2",
-                   folder_->path());
+    built_ = shell(
+        "export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1; cmake -S . -B build -DCMAKE_BUILD_TYPE=Debug "
+        "-DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCMAKE_PREFIX_PATH='" +
+            kPrefix + "' -DCMAKE_CXX_COMPILER_LAUNCHER=$(command -v ccache) && cmake --build build -j 2",
+        folder_->path());
     log_ = text_of(folder_->path() / "log");
   }
   static void TearDownTestSuite() {
@@ -130,8 +131,8 @@ TEST_F(OldCode, DrawsIntoPictures) {
   const Ended ended = run({"drawing.argos", "--picture", "end.svg"});
   EXPECT_EQ(ended.code, 0) << ended.err;
   EXPECT_THAT(text_of(path() / "end.svg"), AllOf(HasSubstr("hat of fb"), HasSubstr("over all")));
-  change("drawing.argos", "library=\"build/libold_loops\" label=\"drawing\"", "library=\"build/none\" label=\"drawing\"",
-         "undrawn.argos");
+  change("drawing.argos", "library=\"build/libold_loops\" label=\"drawing\"",
+         "library=\"build/none\" label=\"drawing\"", "undrawn.argos");
   const Ended undrawn = run({"undrawn.argos"});
   EXPECT_EQ(undrawn.code, 0) << "a view's functions are no reason not to run";
   EXPECT_THAT(undrawn.err, HasSubstr("user_functions are left out"));

@@ -9,12 +9,16 @@ class CDrawing : public CQTOpenGLUserFunctions {
  public:
   CDrawing() { RegisterUserFunction<CDrawing, CFootBotEntity>(&CDrawing::DrawHat); }
   virtual void KeyPressed(QKeyEvent* pc_event) {
-    if (pc_event->key() == Qt::Key_I && m_pcWalker != nullptr) m_pcWalker->m_fSpeed = 20;
-    else GetQTOpenGLWidget().KeyPressed(pc_event);
+    if (pc_event->key() == Qt::Key_I && m_pcWalker != nullptr)
+      m_pcWalker->m_fSpeed = 20;
+    else
+      GetQTOpenGLWidget().KeyPressed(pc_event);
   }
   virtual void KeyReleased(QKeyEvent* pc_event) {
-    if (pc_event->key() == Qt::Key_I && m_pcWalker != nullptr) m_pcWalker->m_fSpeed = 0;
-    else GetQTOpenGLWidget().KeyReleased(pc_event);
+    if (pc_event->key() == Qt::Key_I && m_pcWalker != nullptr)
+      m_pcWalker->m_fSpeed = 0;
+    else
+      GetQTOpenGLWidget().KeyReleased(pc_event);
   }
   virtual void EntitySelected(CEntity& c_entity) {
     CFootBotEntity* pcRobot = dynamic_cast<CFootBotEntity*>(&c_entity);
@@ -23,7 +27,8 @@ class CDrawing : public CQTOpenGLUserFunctions {
   virtual void EntityDeselected(CEntity&) { m_pcWalker = nullptr; }
   virtual void DrawInWorld() {
     DrawRay(CRay3(CVector3(-1, 0, 0.1), CVector3(1, 0, 0.1)), CColor::BLUE, 2.0);
-    DrawPolygon(CVector3(0, 1, 0.01), CQuaternion(), {CVector2(0, 0), CVector2(0.5, 0), CVector2(0, 0.5)}, CColor::GREEN);
+    DrawPolygon(CVector3(0, 1, 0.01), CQuaternion(), {CVector2(0, 0), CVector2(0.5, 0), CVector2(0, 0.5)},
+                CColor::GREEN);
     DrawBox(CVector3(0, -1, 0.1), CQuaternion(), CVector3(0.2, 0.2, 0.2), CColor::ORANGE);
   }
   virtual void DrawOverlay(QPainter& c_painter) {

@@ -87,7 +87,9 @@ class CGardenLoop : public CLoopFunctions {
   virtual void PostExperiment() { LOG << "checks " << m_unChecks << ", wrong " << m_unWrong << std::endl; }
 
  private:
-  CFootBotEntity& Robot(const std::string& str_id) { return dynamic_cast<CFootBotEntity&>(GetSpace().GetEntity(str_id)); }
+  CFootBotEntity& Robot(const std::string& str_id) {
+    return dynamic_cast<CFootBotEntity&>(GetSpace().GetEntity(str_id));
+  }
   CWalker& Walker(const std::string& str_id) {
     return dynamic_cast<CWalker&>(Robot(str_id).GetControllableEntity().GetController());
   }

@@ -12,7 +12,10 @@ class CWalker : public CCI_Controller {
  public:
   virtual void Init(TConfigurationNode& t_tree);
   virtual void ControlStep();
-  virtual void Reset() { m_unSteps = 0; ++m_unResets; }
+  virtual void Reset() {
+    m_unSteps = 0;
+    ++m_unResets;
+  }
 
   CVector3 m_cSeen;
   Real m_fFloor = -1;

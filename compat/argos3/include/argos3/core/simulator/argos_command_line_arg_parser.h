@@ -1,9 +1,8 @@
 // The arguments of the command `argos3`.
 #ifndef TANDEM_ARGOS3_ARGOS_COMMAND_LINE_ARG_PARSER_H
 #define TANDEM_ARGOS3_ARGOS_COMMAND_LINE_ARG_PARSER_H
-#include <string>
-
 #include <argos3/core/utility/configuration/command_line_arg_parser.h>
+#include <string>
 
 namespace argos {
 

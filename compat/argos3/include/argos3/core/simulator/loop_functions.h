@@ -1,8 +1,6 @@
 // Loop functions: the code of an experiment around its robots.
 #ifndef TANDEM_ARGOS3_LOOP_FUNCTIONS_H
 #define TANDEM_ARGOS3_LOOP_FUNCTIONS_H
-#include <string>
-
 #include <argos3/core/simulator/entity/embodied_entity.h>
 #include <argos3/core/simulator/entity/positional_entity.h>
 #include <argos3/core/simulator/physics_engine/physics_engine.h>
@@ -14,6 +12,7 @@
 #include <argos3/core/utility/math/vector2.h>
 #include <argos3/core/utility/math/vector3.h>
 #include <argos3/core/utility/plugins/factory.h>
+#include <string>
 
 namespace argos {
 
@@ -33,8 +32,8 @@ class CLoopFunctions : public CBaseConfigurableResource {
   virtual void PostStep() {}
   virtual bool IsExperimentFinished() { return false; }
   virtual void PostExperiment() {}
-  /// Asked for every pixel of <floor source="loop_functions"/>, and again after CFloorEntity::SetChanged. Ground sensors
-  /// see its shade of grey.
+  /// Asked for every pixel of <floor source="loop_functions"/>, and again after CFloorEntity::SetChanged. Ground
+  /// sensors see its shade of grey.
   virtual CColor GetFloorColor(const CVector2& /*position*/) { return CColor::WHITE; }
 
   CSimulator& GetSimulator() { return m_cSimulator; }

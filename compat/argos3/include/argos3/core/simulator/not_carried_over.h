@@ -6,10 +6,10 @@
 #define ARGOS3_NOT_CARRIED_OVER(message) static_assert(false, "Tandem carries this over from ARGoS 3 not: " message)
 
 /// A member function: whoever calls it gets the message.
-#define ARGOS3_NO_FUNCTION(name, message)                                                                         \
-  template <typename... ARGUMENTS>                                                                                \
-  void name(ARGUMENTS&&...) const {                                                                               \
-    static_assert(sizeof...(ARGUMENTS) > 1000, "Tandem does not have ARGoS 3's " #name ": " message);             \
+#define ARGOS3_NO_FUNCTION(name, message)                                                             \
+  template <typename... ARGUMENTS>                                                                    \
+  void name(ARGUMENTS&&...) const {                                                                   \
+    static_assert(sizeof...(ARGUMENTS) > 1000, "Tandem does not have ARGoS 3's " #name ": " message); \
   }
 
 #endif

@@ -1,9 +1,6 @@
 // The simulator: the one run of this process.
 #ifndef TANDEM_ARGOS3_SIMULATOR_H
 #define TANDEM_ARGOS3_SIMULATOR_H
-#include <map>
-#include <string>
-
 #include <argos3/core/config.h>
 #include <argos3/core/simulator/medium/medium.h>
 #include <argos3/core/simulator/not_carried_over.h>
@@ -12,6 +9,8 @@
 #include <argos3/core/utility/configuration/argos_exception.h>
 #include <argos3/core/utility/datatypes/datatypes.h>
 #include <argos3/core/utility/math/rng.h>
+#include <map>
+#include <string>
 
 namespace argos {
 

@@ -4,7 +4,6 @@
 
 #include <argos3/core/control_interface/ci_controller.h>
 #include <argos3/core/simulator/entity/entity.h>
-
 #include <map>
 #include <string>
 #include <vector>

@@ -8,7 +8,6 @@
 #include <argos3/core/utility/math/quaternion.h>
 #include <argos3/core/utility/math/ray3.h>
 #include <argos3/core/utility/math/vector3.h>
-
 #include <cstdint>
 #include <map>
 #include <string>

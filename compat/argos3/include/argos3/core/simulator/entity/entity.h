@@ -7,7 +7,6 @@
 #include <argos3/core/utility/configuration/base_configurable_resource.h>
 #include <argos3/core/utility/datatypes/any.h>
 #include <argos3/core/utility/datatypes/datatypes.h>
-
 #include <map>
 #include <string>
 #include <sys/types.h>
@@ -82,9 +81,10 @@ struct SEntityComparator {
 
 }  // namespace argos
 
-#define ENABLE_VTABLE() \
-  ARGOS3_NOT_CARRIED_OVER("own classes of entities (ENABLE_VTABLE, REGISTER_ENTITY): describe a robot kind instead, " \
-                          "docs/robot-files.md, or compose boxes and cylinders")
+#define ENABLE_VTABLE()                                                                           \
+  ARGOS3_NOT_CARRIED_OVER(                                                                        \
+      "own classes of entities (ENABLE_VTABLE, REGISTER_ENTITY): describe a robot kind instead, " \
+      "docs/robot-files.md, or compose boxes and cylinders")
 #define REGISTER_ENTITY(...) ENABLE_VTABLE()
 
 #endif

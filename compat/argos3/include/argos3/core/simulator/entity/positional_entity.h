@@ -11,8 +11,8 @@ namespace argos {
 class CPositionalEntity : public CEntity {
  public:
   explicit CPositionalEntity(CComposableEntity* pc_parent);
-  CPositionalEntity(CComposableEntity* pc_parent, const std::string& str_id,
-                    const CVector3& c_position = CVector3(), const CQuaternion& c_orientation = CQuaternion());
+  CPositionalEntity(CComposableEntity* pc_parent, const std::string& str_id, const CVector3& c_position = CVector3(),
+                    const CQuaternion& c_orientation = CQuaternion());
   ~CPositionalEntity() override;
 
   void Reset() override;

@@ -4,7 +4,6 @@
 
 #include <argos3/core/simulator/not_carried_over.h>
 #include <argos3/core/utility/datatypes/datatypes.h>
-
 #include <map>
 #include <string>
 #include <vector>

@@ -10,7 +10,6 @@
 #include <argos3/core/utility/math/ray2.h>
 #include <argos3/core/utility/math/ray3.h>
 #include <argos3/core/utility/math/vector3.h>
-
 #include <map>
 #include <string>
 #include <vector>

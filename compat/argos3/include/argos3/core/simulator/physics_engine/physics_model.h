@@ -5,7 +5,6 @@
 #include <argos3/core/utility/datatypes/datatypes.h>
 #include <argos3/core/utility/math/quaternion.h>
 #include <argos3/core/utility/math/vector3.h>
-
 #include <string>
 
 namespace argos {

@@ -1,11 +1,6 @@
 // The space: entities by id and by type, the clock, the arena.
 #ifndef TANDEM_ARGOS3_SPACE_H
 #define TANDEM_ARGOS3_SPACE_H
-#include <functional>
-#include <map>
-#include <string>
-#include <vector>
-
 #include <argos3/core/simulator/entity/controllable_entity.h>
 #include <argos3/core/simulator/entity/embodied_entity.h>
 #include <argos3/core/simulator/entity/entity.h>
@@ -15,6 +10,10 @@
 #include <argos3/core/utility/math/range.h>
 #include <argos3/core/utility/math/ray3.h>
 #include <argos3/core/utility/math/vector3.h>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
 
 namespace argos {
 

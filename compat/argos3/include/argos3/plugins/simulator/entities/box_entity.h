@@ -1,12 +1,11 @@
 // Boxes.
 #ifndef TANDEM_ARGOS3_BOX_ENTITY_H
 #define TANDEM_ARGOS3_BOX_ENTITY_H
-#include <string>
-
 #include <argos3/core/simulator/entity/composable_entity.h>
 #include <argos3/core/simulator/entity/embodied_entity.h>
 #include <argos3/plugins/simulator/entities/led_equipped_entity.h>
 #include <argos3/plugins/simulator/media/led_medium.h>
+#include <string>
 
 namespace argos {
 

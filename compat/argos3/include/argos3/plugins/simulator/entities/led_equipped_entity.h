@@ -1,13 +1,12 @@
 // The LEDs of a robot, a box or a cylinder.
 #ifndef TANDEM_ARGOS3_LED_EQUIPPED_ENTITY_H
 #define TANDEM_ARGOS3_LED_EQUIPPED_ENTITY_H
-#include <map>
-#include <string>
-#include <vector>
-
 #include <argos3/core/simulator/entity/composable_entity.h>
 #include <argos3/core/simulator/physics_engine/physics_model.h>
 #include <argos3/plugins/simulator/entities/led_entity.h>
+#include <map>
+#include <string>
+#include <vector>
 
 namespace argos {
 

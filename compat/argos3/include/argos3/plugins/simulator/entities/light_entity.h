@@ -1,10 +1,9 @@
 // Lamps.
 #ifndef TANDEM_ARGOS3_LIGHT_ENTITY_H
 #define TANDEM_ARGOS3_LIGHT_ENTITY_H
-#include <string>
-
 #include <argos3/core/simulator/entity/positional_entity.h>
 #include <argos3/plugins/simulator/entities/led_equipped_entity.h>
+#include <string>
 
 namespace argos {
 

@@ -1,13 +1,12 @@
 // The range-and-bearing board of a robot.
 #ifndef TANDEM_ARGOS3_RAB_EQUIPPED_ENTITY_H
 #define TANDEM_ARGOS3_RAB_EQUIPPED_ENTITY_H
-#include <map>
-#include <vector>
-
 #include <argos3/core/simulator/entity/positional_entity.h>
 #include <argos3/core/simulator/physics_engine/physics_model.h>
 #include <argos3/core/utility/datatypes/byte_array.h>
 #include <argos3/core/utility/datatypes/set.h>
+#include <map>
+#include <vector>
 
 namespace argos {
 

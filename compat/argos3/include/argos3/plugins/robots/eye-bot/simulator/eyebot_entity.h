@@ -12,9 +12,8 @@ class CEyeBotEntity : public CRobotEntity {
   /// As for foot-bots.
   CEyeBotEntity(const std::string& id, const std::string& controller, const CVector3& position = CVector3(),
                 const CQuaternion& orientation = CQuaternion(), Real rab_range = 3.0, size_t rab_data_size = 10,
-                const std::string& battery_model = "",
-                const CRadians& perspective_aperture = ToRadians(CDegrees(30.0)), Real focal_length = 0.035,
-                Real perspective_range = 2.0);
+                const std::string& battery_model = "", const CRadians& perspective_aperture = ToRadians(CDegrees(30.0)),
+                Real focal_length = 0.035, Real perspective_range = 2.0);
   ~CEyeBotEntity() override;
   CAny AsAny() override;
 

@@ -1,8 +1,6 @@
 // What all robots of the space have in common.
 #ifndef TANDEM_ARGOS3_ROBOT_ENTITY_H
 #define TANDEM_ARGOS3_ROBOT_ENTITY_H
-#include <string>
-
 #include <argos3/core/simulator/entity/composable_entity.h>
 #include <argos3/core/simulator/entity/controllable_entity.h>
 #include <argos3/core/simulator/entity/embodied_entity.h>
@@ -10,6 +8,7 @@
 #include <argos3/plugins/simulator/entities/led_equipped_entity.h>
 #include <argos3/plugins/simulator/entities/rab_equipped_entity.h>
 #include <argos3/plugins/simulator/entities/wheeled_entity.h>
+#include <string>
 
 namespace argos {
 

@@ -19,12 +19,52 @@ enum Key {
   Key_Space = 0x20,
   Key_Plus = 0x2b,
   Key_Minus = 0x2d,
-  Key_0 = 0x30, Key_1, Key_2, Key_3, Key_4, Key_5, Key_6, Key_7, Key_8, Key_9,
-  Key_A = 0x41, Key_B, Key_C, Key_D, Key_E, Key_F, Key_G, Key_H, Key_I, Key_J, Key_K, Key_L, Key_M,
-  Key_N, Key_O, Key_P, Key_Q, Key_R, Key_S, Key_T, Key_U, Key_V, Key_W, Key_X, Key_Y, Key_Z
+  Key_0 = 0x30,
+  Key_1,
+  Key_2,
+  Key_3,
+  Key_4,
+  Key_5,
+  Key_6,
+  Key_7,
+  Key_8,
+  Key_9,
+  Key_A = 0x41,
+  Key_B,
+  Key_C,
+  Key_D,
+  Key_E,
+  Key_F,
+  Key_G,
+  Key_H,
+  Key_I,
+  Key_J,
+  Key_K,
+  Key_L,
+  Key_M,
+  Key_N,
+  Key_O,
+  Key_P,
+  Key_Q,
+  Key_R,
+  Key_S,
+  Key_T,
+  Key_U,
+  Key_V,
+  Key_W,
+  Key_X,
+  Key_Y,
+  Key_Z
 };
 enum GlobalColor { white, black, red, green, blue, cyan, magenta, yellow, gray, darkRed, darkGreen, darkBlue };
-enum AlignmentFlag { AlignLeft = 1, AlignRight = 2, AlignHCenter = 4, AlignTop = 32, AlignBottom = 64, AlignCenter = 132 };
+enum AlignmentFlag {
+  AlignLeft = 1,
+  AlignRight = 2,
+  AlignHCenter = 4,
+  AlignTop = 32,
+  AlignBottom = 64,
+  AlignCenter = 132
+};
 
 }  // namespace Qt
 

@@ -9,7 +9,8 @@ class CQTOpenGLMainWindow {
  public:
   CQTOpenGLWidget& GetOpenGLWidget();
 
-  ARGOS3_NO_FUNCTION(addDockWidget, "the window is a page in the browser: publish values, declare controls, docs/hooks.md")
+  ARGOS3_NO_FUNCTION(addDockWidget,
+                     "the window is a page in the browser: publish values, declare controls, docs/hooks.md")
   ARGOS3_NO_FUNCTION(addToolBar, "the window is a page in the browser: declare controls, docs/hooks.md")
   ARGOS3_NO_FUNCTION(menuBar, "the window is a page in the browser: declare controls, docs/hooks.md")
 };

@@ -1,10 +1,6 @@
 // User functions of ARGoS' window: drawings go to Tandem's window and pictures.
 #ifndef TANDEM_ARGOS3_QTOPENGL_USER_FUNCTIONS_H
 #define TANDEM_ARGOS3_QTOPENGL_USER_FUNCTIONS_H
-#include <functional>
-#include <string>
-#include <vector>
-
 #include <argos3/core/simulator/entity/entity.h>
 #include <argos3/core/simulator/entity/floor_entity.h>
 #include <argos3/core/simulator/loop_functions.h>
@@ -18,6 +14,9 @@
 #include <argos3/plugins/simulator/visualizations/qt-opengl/qt_types.h>
 #include <argos3/plugins/simulator/visualizations/qt-opengl/qtopengl_main_window.h>
 #include <argos3/plugins/simulator/visualizations/qt-opengl/qtopengl_widget.h>
+#include <functional>
+#include <string>
+#include <vector>
 
 namespace argos {
 
@@ -93,19 +92,19 @@ class CQTOpenGLUserFunctions : public CBaseConfigurableResource {
   CVector3 InWorld(const CVector3& point) const;
   CVector3 InWorld(const CVector3& position, const CQuaternion& orientation, const CVector3& point) const;
 
-  std::vector<std::function<void(CEntity&)> > m_vecFunctions;
+  std::vector<std::function<void(CEntity&)>> m_vecFunctions;
   CColor m_cColor;
   bool m_bInFrame = false;  ///< of an entity, at:
   CVector3 m_cPosition;
   CQuaternion m_cOrientation;
 };
 
-#define TANDEM_ARGOS3_NO_GL(name)                                                                                     \
-  template <typename... ARGUMENTS>                                                                                    \
-  void name(ARGUMENTS&&...) {                                                                                         \
-    static_assert(sizeof...(ARGUMENTS) > 1000,                                                                        \
-                  "Tandem's window is a page in the browser and has no OpenGL (" #name "): draw with DrawPolygon, "  \
-                  "DrawCircle, DrawBox, DrawCylinder, DrawRay, DrawText");                                            \
+#define TANDEM_ARGOS3_NO_GL(name)                                                                                   \
+  template <typename... ARGUMENTS>                                                                                  \
+  void name(ARGUMENTS&&...) {                                                                                       \
+    static_assert(sizeof...(ARGUMENTS) > 1000, "Tandem's window is a page in the browser and has no OpenGL (" #name \
+                                               "): draw with DrawPolygon, "                                         \
+                                               "DrawCircle, DrawBox, DrawCylinder, DrawRay, DrawText");             \
   }
 TANDEM_ARGOS3_NO_GL(glBegin)
 TANDEM_ARGOS3_NO_GL(glEnd)
