@@ -13,13 +13,13 @@ std::string duration_text(double seconds);
 /// terminal: the line "film: 42 %, about 5 s left" after 2 s, 4 s, 8 s, …, or nothing without such a name.
 class Progress {
  public:
-  /// `total` 0: endless, the bar then only counts. `per_unit` of what is counted are one `unit`: ticks in a second.
+  /// `total` 0: endless, the bar then only counts. So many steps are one `unit`: `per_unit`, as ticks in a second.
   Progress(std::int64_t total, std::int64_t per_unit, std::string name = {}, std::string unit = "s");
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// `more` stands behind: ", 3 failed". What is left is reckoned from what was done since the first call.
+  /// `more` stands behind: ", 3 failed". The time left follows from the steps since the first call.
   void step(std::int64_t done, std::string_view more = {});
 
  private:

@@ -38,7 +38,7 @@ struct Incidents {
   std::vector<IncidentCause> causes;  ///< of `first`
   std::uint64_t latest = 0;           ///< of these, that happened last
 
-  /// Something that `who` did or met; `body` tells it from others.
+  /// A body did or met something: "robot 'ep3'", " left the arena at tick 12"; `body` is its number.
   void note(std::uint32_t body, std::string who, std::string what);
   /// Logs causes that are new since the last call; with `all`, also those that more bodies have met since they were
   /// logged.

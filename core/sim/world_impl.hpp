@@ -290,7 +290,7 @@ struct World::Impl final : hal::RobotLog::Sink {
     const Object& object = stores().objects[body.index()];
     return (object.kind == Object::Kind::Box ? "box '" : "cylinder '") + object.id + "'";
   }
-  /// Tells bodies apart in what is counted of them.
+  /// Number of a body among incidents.
   static std::uint32_t number_of(std::uint32_t entity) noexcept { return entity << 1U; }
   std::uint32_t number_of(BodyKey body) const noexcept {
     const auto index = static_cast<std::uint32_t>(body.index());
