@@ -1,5 +1,5 @@
 -- The rule of controllers/swarm: neighbors pull and push as by springs with a target distance (Lennard-Jones).
-local target, gain, exponent, max_speed = 75, 1000, 2, 10
+local target, gain, exponent, max_speed = 50, 10000, 1, 10
 local hard_turn = math.rad(70)
 local n = 0
 
