@@ -196,6 +196,20 @@ bool take_all(std::span<const std::byte> segment, PluginNote& note, bool& built)
   return true;
 }
 
+/// Whether names of the namespace `argos` are among the symbols.
+bool names_argos(const Source& source) {
+  constexpr std::string_view kMangled = "N5argos";
+  constexpr std::size_t kPiece = 1U << 16;
+  std::vector<std::byte> bytes(kPiece + kMangled.size());
+  for (std::uint64_t at = 0; at < source.size(); at += kPiece) {
+    const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(bytes.size(), source.size() - at));
+    if (!source.read(at, std::span(bytes).first(size))) return false;
+    if (std::string_view(reinterpret_cast<const char*>(bytes.data()), size).find(kMangled) != std::string_view::npos)
+      return true;
+  }
+  return false;
+}
+
 Error damaged() {
   return Error{"is no whole shared object: it was cut off or damaged; build it again"};
 }
@@ -234,6 +248,11 @@ Result<PluginNote> parse(const Source& source) {
     if (!take_all(bytes, note, built))
       return Error{"has a damaged note .note.tandem; build it again, all of it with one compiler and one Tandem"};
   }
+  if (!built && names_argos(source))
+    return Error{
+        "was built for ARGoS 3, whose program and classes are not here. Build its project again, against Tandem's "
+        "argos layer: cmake -B build -DCMAKE_PREFIX_PATH=PREFIX, where Tandem is installed; the sources stay as they "
+        "are"};
   if (!built)
     return Error{
         "is not a Tandem plug-in, or one of before 0.1.0: it has no note .note.tandem. A plug-in has "

@@ -10,8 +10,8 @@
 
 #include "controllers/lua_controller/devices.hpp"
 #include "controllers/lua_controller/own_tables.hpp"
+#include "hal/device/argos_curves.hpp"
 #include "hal/device/ring_sensors.hpp"
-#include "hal/elementary.hpp"
 
 namespace tandem::controllers::lua {
 namespace {
@@ -90,11 +90,6 @@ void fill_ring(lua_State* L, Interpreter& in, std::size_t device, Value&& value)
   lua_call(L, count, 0);
 }
 
-/// ARGoS' response of the rings of foot-bot, eye-bot and e-puck: 1 at contact, 0 beyond the range.
-double response(double distance_m) noexcept {
-  return distance_m < 0.009889556 ? 1.0 : 0.0100527 / (distance_m + 0.000163144);
-}
-
 void open_ring_of_part(lua_State* L, Interpreter& in, std::size_t device, std::span<const hal::Mount> mounts) {
   const std::string_view written = in.device(device).written;
   open_ring(L, in, device, mounts, written == "proximity" || written == "light");
@@ -112,11 +107,11 @@ void open_light(lua_State* L, Interpreter& in, std::size_t device) {
 
 void fill_proximity(lua_State* L, Interpreter& in, std::size_t device, const void* port) {
   const auto& p = *static_cast<const hal::Proximity*>(port);
-  const bool bare = in.device(device).written == "proximity";
+  hal::ArgosProximity curve = hal::argos_proximity(in.device(device).written);
+  if (curve == hal::ArgosProximity::Epuck && !in.script().argos) curve = hal::ArgosProximity::Footbot;
   fill_ring(L, in, device, [&](std::size_t i) {
-    if (i >= p.count || p.distance_m[i] >= p.range_m) return 0.0;
-    const auto distance_m = static_cast<double>(p.distance_m[i]);
-    return bare ? hal::exp(-distance_m) : response(distance_m);
+    const bool nothing = i >= p.count || p.distance_m[i] == p.range_m;  // farther: a reading that is noise alone
+    return nothing ? 0.0 : hal::argos_reading(curve, static_cast<double>(p.distance_m[i]));
   });
 }
 
