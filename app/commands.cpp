@@ -5,7 +5,7 @@
 namespace tandem::app {
 namespace {
 
-/// In the order of the program's help.
+/// In the order of the program's help, under each heading.
 void register_commands(hal::Registrar& registrar) {
   for (const hal::CommandType* type : {&run_command, &compare_command, &upgrade_command, &export_command, &list_command,
                                        &describe_command, &check_command, &completion_command, &man_command})
@@ -17,7 +17,8 @@ void register_commands(hal::Registrar& registrar) {
 const Program& program() {
   static constexpr Program kProgram = {
       "Tandem: one controller drives simulated robots, real ones, and both together.",
-      "The launcher at the top of the checkout has further commands: test, build and format.", &register_commands};
+      "The launcher at the top of a checkout has further commands: build, docs, format, package, python, test.",
+      &register_commands};
   return kProgram;
 }
 

@@ -13,15 +13,16 @@ namespace {
 constexpr int kVisited = 24;  // ticks that are gone to, besides the first
 
 /// CPU time of the whole run.
-double plain_s(core::World& world, std::int64_t ticks) {
+double plain_s(core::World& world, std::int64_t ticks, const std::atomic<bool>& stop) {
   world.start();
   const double began = app::cpu_seconds();
-  for (std::int64_t i = 0; i < ticks; ++i) world.step();
+  for (std::int64_t i = 0; i < ticks && !stop.load(); ++i) world.step();
   return app::cpu_seconds() - began;
 }
 
-void walk(core::World& world, core::Timeline& timeline, core::LiveClock& clock, std::int64_t ticks) {
-  for (std::int64_t i = 0; i < ticks; ++i) {
+void walk(core::World& world, core::Timeline& timeline, core::LiveClock& clock, std::int64_t ticks,
+          const std::atomic<bool>& stop) {
+  for (std::int64_t i = 0; i < ticks && !stop.load(); ++i) {
     (void)timeline.before_step();
     const hal::TimeNs began_ns = clock.now_ns();
     world.step();
@@ -30,9 +31,10 @@ void walk(core::World& world, core::Timeline& timeline, core::LiveClock& clock, 
 }
 
 /// The first tick, then others all over the run, each after the end: nothing is near. Seconds of each.
-hal::Result<std::vector<double>> visit(core::Timeline& timeline, std::int64_t ticks) {
+hal::Result<std::vector<double>> visit(core::Timeline& timeline, std::int64_t ticks, const std::atomic<bool>& stop) {
   std::vector<double> back_s;
   for (int i = 0; i <= kVisited; ++i) {
+    if (stop.load()) return hal::Error{"interrupted"};
     const hal::Tick tick = i == 0 ? 0 : (ticks * ((i * 7) % (kVisited + 1))) / (kVisited + 1) + i;
     const double began = app::wall_seconds();
     hal::Status there = timeline.go_to(std::min(tick, ticks));
@@ -53,21 +55,22 @@ hal::Result<int> back(const BenchCase& c, const Call& call) {
     timeline.reset();
     world = world_of(scenario, call.loader);
     if (world == nullptr) return app::kBadInput;
-    plain.push_back(plain_s(*world, c.ticks));
+    plain.push_back(plain_s(*world, c.ticks, call.stop));
     world.reset();
     world = world_of(scenario, call.loader);
     world->start();
     const double began = app::cpu_seconds();
     timeline = std::make_unique<core::Timeline>(*world, clock, core::LiveOptions{});
     timeline->start();
-    walk(*world, *timeline, clock, c.ticks);
+    walk(*world, *timeline, clock, c.ticks, call.stop);
     kept.push_back(app::cpu_seconds() - began);
     quotients.push_back(kept.back() / plain.back());
+    if (call.stop.load()) return hal::Error{"interrupted"};
   }
   if (!timeline->no_way_back().empty()) return hal::Error{timeline->no_way_back()};
   const std::uint64_t end = world->state_hash();
   const std::size_t checkpoints = timeline->checkpoints();
-  const auto back_s = visit(*timeline, c.ticks);
+  const auto back_s = visit(*timeline, c.ticks, call.stop);
   if (!back_s.ok()) return back_s.error();
   const std::vector<double>& s = back_s.value();
   print_line({{"bench", "back"},

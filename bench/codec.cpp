@@ -86,7 +86,7 @@ void measure_all() {
 }  // namespace
 
 hal::Result<int> bench_codec(const Call& call) {
-  for (std::int64_t i = 0; i < call.options.repeat; ++i) measure_all();
+  for (std::int64_t i = 0; i < call.options.repeat && !call.stop.load(); ++i) measure_all();
   return app::kDone;
 }
 

@@ -20,10 +20,11 @@
 namespace tandem::bench {
 namespace {
 
-constexpr std::array<Bench, 12> kBenches = {
+constexpr std::array<Bench, 13> kBenches = {
     {{"diffusion", &bench_scene, "the standard scene"},
      {"flocking", &bench_scene, "robots that fly, in space"},
      {"lua", &bench_scene, ""},
+     {"argos", &bench_scene, "the standard scene under a controller for ARGoS 3"},
      {"codec", &bench_codec, "messages of a bridge, only with --repeat"},
      {"record", &bench_record, "what a record of all poses costs, with --robots, --threads, --ticks"},
      {"sense_to_act", &bench_sense_to_act,
@@ -151,6 +152,10 @@ int run(const BenchOptions& options) {
       *std::find_if(kBenches.begin(), kBenches.end(), [&](const Bench& b) { return b.name == options.name; });
   try {
     const hal::Result<int> code = bench.run(call);
+    if (const int interrupted = app::interrupted_code(); interrupted != 0) {
+      app::say("interrupted");
+      return interrupted;
+    }
     return code.ok() ? code.value() : refuse(app::kFailedRunning, code.error().message);
   } catch (const std::exception& e) {
     return refuse(app::kFailedRunning, e.what());
@@ -209,5 +214,4 @@ void BenchOptions::describe(hal::CommandLine& line) {
 }  // namespace tandem::bench
 
 constinit const tandem::hal::CommandType tandem::app::bench_command =
-    tandem::hal::command_type<tandem::bench::BenchOptions, tandem::bench::run>("bench",
-                                                                               tandem::app::module_summary("bench"));
+    tandem::app::module_command<tandem::bench::BenchOptions, tandem::bench::run>("bench");

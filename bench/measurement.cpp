@@ -14,6 +14,7 @@
 
 #include "app/build_info.hpp"
 #include "app/exit_code.hpp"
+#include "app/module/modules.hpp"
 #include "app/outputs/run_figures.hpp"
 #include "app/process/measure.hpp"
 #include "app/process/terminal.hpp"
@@ -231,6 +232,9 @@ hal::Result<Lines> lines_of(const Call& call) {
     auto saved = choose_saved(call);
     return saved.ok() ? Lines{app::kDone, std::move(saved).value()}
                       : Lines{refuse(app::kBadInput, saved.error().message)};
+  }
+  if (call.options.name == "argos") {
+    if (const hal::Status there = app::need_module(call.loader, "argos3"); !there.ok()) return there.error();
   }
   if (call.options.name != "lua") return measure_all(cases_of(call), call);
   const hal::TemporaryFolder folder("tandem_bench");

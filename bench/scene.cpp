@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "bench/bench.hpp"
+#include "hal/library_folder.hpp"
 
 namespace tandem::bench {
 namespace {
@@ -46,17 +47,19 @@ std::string implementation_in(const std::string& devices, const std::string& dev
 }
 
 /// Range-and-bearing and cameras are taken by controllers that are told to, and change nothing of what they do. Under
-/// a script, `lua_controller` steps the same robots.
+/// a script, `lua_controller` steps the same robots; as sources for ARGoS have it, a library of the module `argos3`.
 core::ControllerConfig diffusion_controller(const BenchCase& c) {
   core::ControllerConfig config;
   const bool footbot = c.robot == "foot-bot";
   config.id = "diffusion";
   config.label = c.bench == "lua" ? "lua_controller" : footbot ? "footbot_diffusion" : "epuck_diffusion";
-  config.library = config.label;
+  config.library =
+      c.bench == "argos" ? (hal::library_folder() / "argos3/lib/libargos_diffusion.so").string() : config.label;
   config.actuators.push_back({"differential_steering", "default", {}});
   core::DeviceChoice proximity{"proximity", implementation_in(c.devices, "proximity"), {}};
-  if (c.bench == "lua") {
+  if (c.bench == "lua" || c.bench == "argos")
     proximity.options.name = footbot ? "footbot_proximity" : "epuck_proximity";
+  if (c.bench == "lua") {
     config.params.name = "params";
     config.params.attributes.push_back({"script", c.script, 0});
   }

@@ -205,7 +205,7 @@ void print(const Asked& c, Witness& witness) {
               {"max_us", at_share_us(times, 1.0)}});
 }
 
-hal::Status measure_once(const Asked& c) {
+hal::Status measure_once(const Asked& c, const std::atomic<bool>& stop) {
   Witness witness;
   Robots robots(c.robots, witness);
   auto opened = LcmLink::open(kUrl);
@@ -227,7 +227,10 @@ hal::Status measure_once(const Asked& c) {
     return ended.ok() ? hal::Error{"not all robots took off within 20 s"} : ended;
   }
   witness.set_timing(true);
-  std::this_thread::sleep_for(std::chrono::duration<double>(c.seconds));
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(c.seconds);
+  while (std::chrono::steady_clock::now() < end && !stop.load())
+    std::this_thread::sleep_until(
+        std::min<decltype(end)>(end, std::chrono::steady_clock::now() + std::chrono::milliseconds(100)));
   witness.set_timing(false);
   if (const hal::Status ended = robots.end(); !ended.ok()) return ended;
   if (witness.times_ns().empty()) return hal::Error{"no report was answered"};
@@ -244,8 +247,9 @@ hal::Result<int> bench_sense_to_act(const Call& call) {
     if (call.options.real_time) {
       if (const hal::Status permitted = use_real_time(); !permitted.ok()) return permitted.error();
     }
-    for (std::int64_t i = 0; i < call.options.repeat; ++i) {
-      if (const hal::Status done = measure_once({robots, call.options.seconds}); !done.ok()) return done.error();
+    for (std::int64_t i = 0; i < call.options.repeat && !call.stop.load(); ++i) {
+      if (const hal::Status done = measure_once({robots, call.options.seconds}, call.stop); !done.ok())
+        return done.error();
     }
   }
   return app::kDone;

@@ -33,6 +33,7 @@ using namespace std::chrono_literals;
 using window::Client;
 
 constexpr std::uint32_t kPoses = 1;
+constexpr int kWakeEvery_ms = 100;  // between looks whether this is to stop
 
 /// Number of the frame that this is of; 0: of none.
 std::uint32_t pose_frame(const Client::Received& received) {
@@ -111,11 +112,12 @@ class Viewing {
   }
 
   /// What stands behind "view: "; else all that it said.
-  hal::Result<std::string> address() const {
+  hal::Result<std::string> address(const std::atomic<bool>& stop) const {
     std::string text;
     char buffer[512];
     pollfd ready{program_ == nullptr ? -1 : program_->output(), POLLIN, 0};
-    while (program_ != nullptr && ::poll(&ready, 1, -1) > 0) {
+    while (program_ != nullptr && !stop.load()) {
+      if (::poll(&ready, 1, kWakeEvery_ms) <= 0) continue;
       const ssize_t got = ::read(ready.fd, buffer, sizeof buffer);
       if (got <= 0) break;
       text.append(buffer, static_cast<std::size_t>(got));
@@ -135,26 +137,28 @@ struct Shown {
   double address_s = 0.0, frame_s = 0.0;
 };
 
-hal::Result<Shown> show(const std::string& file) {
+hal::Result<Shown> show(const std::string& file, const std::atomic<bool>& stop) {
   Shown shown;
   const double began = app::wall_seconds();
   const Viewing viewing(file);
-  const auto address = viewing.address();
+  const auto address = viewing.address(stop);
   if (!address.ok()) return address.error();
   shown.address_s = app::wall_seconds() - began;
   auto client = Client::connect(address.value());
   if (!client.ok()) return client.error();
+  const double latest_s = app::wall_seconds() + 30.0;
   for (;;) {
-    const auto received = client.value().receive(30s);
-    if (!received || received->kind == Client::Received::Kind::Close) return hal::Error{"tandem view shows no frame"};
-    if (pose_frame(*received) == 0) continue;
+    const auto received = client.value().receive(std::chrono::milliseconds(kWakeEvery_ms));
+    const bool closed = received && received->kind == Client::Received::Kind::Close;
+    if (closed || stop.load() || app::wall_seconds() > latest_s) return hal::Error{"tandem view shows no frame"};
+    if (!received || pose_frame(*received) == 0) continue;
     shown.frame_s = app::wall_seconds() - began;
     return shown;
   }
 }
 
 /// How soon a thousand robots are seen: medians.
-hal::Status first_frame(std::int64_t repeat) {
+hal::Status first_frame(std::int64_t repeat, const std::atomic<bool>& stop) {
   constexpr std::int64_t kRobots = 1000;
   const double half_m = 0.25 * std::sqrt(static_cast<double>(kRobots));
   const hal::TemporaryFolder folder("tandem_view");
@@ -165,7 +169,7 @@ hal::Status first_frame(std::int64_t repeat) {
   if (!written.ok()) return written;
   std::vector<double> address_s, frame_s;
   for (std::int64_t i = 0; i < repeat; ++i) {
-    const auto shown = show(file);
+    const auto shown = show(file, stop);
     if (!shown.ok()) return shown.error();
     address_s.push_back(shown.value().address_s);
     frame_s.push_back(shown.value().frame_s);
@@ -187,6 +191,7 @@ hal::Status cost(const BenchCase& c, const Call& call) {
   const double frames_per_s = c.robots > 20'000 ? 10.0 : 20.0;  // that the viewer asks for
   core::LiveOptions options;
   options.can_go_back = false;
+  options.stop = &call.stop;
   core::LiveRun live(*world, options);
   app::ViewRequest request;
   request.no_browser = true;
@@ -203,7 +208,8 @@ hal::Status cost(const BenchCase& c, const Call& call) {
   const auto alone = [&] { return step(*world, live, *view.value(), c.ticks); };
   const auto watched = [&] {
     Onlooker onlooker(view.value()->address(), frames_per_s);
-    while (onlooker.frames() == 0) (void)step(*world, live, *view.value(), 1);  // members and scene are told once
+    while (onlooker.frames() == 0 && !call.stop.load())
+      (void)step(*world, live, *view.value(), 1);  // members and scene are told once
     const std::int64_t frames_before = onlooker.frames(), bytes_before = onlooker.bytes();
     const Half half = step(*world, live, *view.value(), c.ticks);
     frames += onlooker.frames() - frames_before;
@@ -211,13 +217,14 @@ hal::Status cost(const BenchCase& c, const Call& call) {
     watched_s += half.wall_s;
     return half;
   };
-  for (std::int64_t pair = 0; pair < pairs; ++pair) {  // in turns, so that what drifts meets both
+  for (std::int64_t pair = 0; pair < pairs && !call.stop.load(); ++pair) {  // in turns, so that what drifts meets both
     Half without = pair % 2 == 0 ? alone() : Half{};
     const Half with = watched();
     if (pair % 2 != 0) without = alone();
     wall.push_back(with.wall_s / without.wall_s);
     own.push_back(with.own_cpu_s / without.own_cpu_s);
   }
+  if (call.stop.load()) return hal::Error{"interrupted"};
   print_line({{"bench", "view"},
               {"robots", c.robots},
               {"engine", c.engine},
@@ -250,7 +257,7 @@ hal::Result<int> bench_view(const Call& call) {
       }
     }
   }
-  const hal::Status seen = first_frame(call.options.repeat);
+  const hal::Status seen = first_frame(call.options.repeat, call.stop);
   return seen.ok() ? hal::Result<int>(app::kDone) : seen.error();
 }
 

@@ -138,6 +138,8 @@ function(tandem_module name)
   set(own app/${name})
   if(name STREQUAL "lab")
     set(own lab) # it has commands of folders above app
+  elseif(name STREQUAL "argos3")
+    set(own compat/argos3)
   endif()
   tandem_closure(folders ${own})
   list(REMOVE_ITEM folders ${there})

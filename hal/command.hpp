@@ -9,10 +9,12 @@
 //     }
 //   };
 //   hal::Result<int> count(const Census& census, const hal::CommandContext& context);       returns the exit code
-//   const hal::CommandType command = hal::command_type<Census, count>("census", "Count robots.");
+//   const hal::CommandType command =
+//       hal::command_type<Census, count>("census", "Count robots.", hal::command_group::kStudy);
 //
 // Help, completion and manual pages are made from what is described.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -205,6 +207,13 @@ class CommandCall {
   virtual Result<int> run(const CommandContext& context) = 0;
 };
 
+/// Headings under which help lists commands, in this order; others come after them.
+namespace command_group {
+inline constexpr std::string_view kSimulate = "Simulate", kRealRobots = "Real robots", kStudy = "Study",
+                                  kExtend = "Extend", kTools = "Tools", kFurther = "Further commands";
+inline constexpr std::array kAll = {kSimulate, kRealRobots, kStudy, kExtend, kTools};
+}  // namespace command_group
+
 /// A command. "plugin new" is the command `new` of `plugin`, which is an entry without `make`.
 struct CommandType {
   static constexpr std::string_view kCategory = "command";
@@ -213,6 +222,7 @@ struct CommandType {
   std::string_view name;
   std::string_view summary;  ///< one sentence
   std::unique_ptr<CommandCall> (*make)() = nullptr;
+  std::string_view group = command_group::kFurther;  ///< heading in help
 
   std::string flaw() const {
     const auto fits = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '-'; };
@@ -234,7 +244,8 @@ struct CommandType {
 /// The table of a command with values of class `T`, which describes them: `kRun(values)` or `kRun(values, context)`
 /// returns what `CommandCall::run` does.
 template <class T, auto kRun>
-constexpr CommandType command_type(std::string_view name, std::string_view summary) {
+constexpr CommandType command_type(std::string_view name, std::string_view summary,
+                                   std::string_view group = command_group::kFurther) {
   class Called final : public CommandCall {
    public:
     void describe(CommandLine& line) override { values_.describe(line); }
@@ -248,7 +259,7 @@ constexpr CommandType command_type(std::string_view name, std::string_view summa
    private:
     T values_;
   };
-  return {name, summary, []() -> std::unique_ptr<CommandCall> { return std::make_unique<Called>(); }};
+  return {name, summary, []() -> std::unique_ptr<CommandCall> { return std::make_unique<Called>(); }, group};
 }
 
 }  // namespace tandem::hal

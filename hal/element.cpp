@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "hal/markup.hpp"
 #include "hal/open_params.hpp"
 #include "hal/printable.hpp"
 
@@ -144,6 +145,18 @@ std::string path_beside(const std::string& path, const std::string& file) {
   return (fs::path(file).parent_path() / path).string();
 }
 
+namespace {
+
+void write_xml(const Element& element, std::string& xml) {
+  xml += "<" + element.name;
+  for (const Element::Attribute& a : element.attributes) xml += " " + a.name + "=\"" + escaped_markup(a.value) + "\"";
+  xml += ">";
+  for (const Element& child : element.children) write_xml(child, xml);
+  xml += "</" + element.name + ">";
+}
+
+}  // namespace
+
 ElementReader::ElementReader(const Element& element, Problems& problems, std::vector<std::string> ignore,
                              std::vector<std::string> ignore_children)
     : element_(element), problems_(problems), known_(std::move(ignore)), known_children_(std::move(ignore_children)) {}
@@ -170,6 +183,12 @@ void ElementReader::visit(const Param& param) {
     return;
   }
   if (words != nullptr && param.name == kOtherParams) return take_others(*words);
+  if (words != nullptr && param.name == kWholeElement) {
+    write_xml(element_, *words);
+    for (const Element::Attribute& a : element_.attributes) known_.push_back(a.name);
+    for (const Element& child : element_.children) known_children_.push_back(child.name);
+    return;
+  }
   known_.emplace_back(param.name);
   const std::string* const text = element_.attribute(param.name);
   if (text == nullptr) return;
@@ -333,7 +352,7 @@ void ElementWriter::visit(const Param& param) {
     }
     return;
   }
-  if (param.name == kOtherParams || param.name == kPathParam) return;  // written already
+  if (param.name == kOtherParams || param.name == kPathParam || param.name == kWholeElement) return;  // written already
   if (element_.attribute(param.name) != nullptr) return;
   const auto exactly = [&](double v) { return format_exactly(v, *param.bare); };
   element_.attributes.push_back({std::string(param.name), value_text(param, exactly, "true", "false", ","), 0});
@@ -386,7 +405,7 @@ void ManualWriter::visit(const Param& param) {
     return;
   }
   if (name == kPathParam) return;
-  if (name == kOtherParams) {
+  if (name == kOtherParams || name == kWholeElement) {
     text_ += indent_ + "NAME=\"TEXT\"  (any other name)\n" + doc;
     return;
   }

@@ -16,6 +16,9 @@ inline constexpr std::string_view kOtherParams = "*";
 /// Text parameter that the reader makes a path that can be opened, where it names one relative to the file.
 inline constexpr std::string_view kPathParam = "*path";
 
+/// Text parameter for which the reader gives the whole element, children and all, as XML.
+inline constexpr std::string_view kWholeElement = "**";
+
 /// A parameter that only its user knows.
 struct NamedText {
   std::string name, value;
@@ -37,6 +40,12 @@ inline void describe_others(ParamVisitor& v, std::vector<NamedText>& values, std
 inline void describe_file(ParamVisitor& v, std::string_view name, std::string& path, std::string_view doc) {
   v.text(name, path, doc);
   v.text(kPathParam, path, doc);
+}
+
+/// Describes the element itself, as XML text, for classes that read it in their own way: none of its attributes and
+/// children is unknown then. Empty where nothing was read.
+inline void describe_element(ParamVisitor& v, std::string& xml, std::string_view doc) {
+  v.text(kWholeElement, xml, doc);
 }
 
 }  // namespace tandem::hal

@@ -62,10 +62,14 @@ std::string how_to_rebuild(const fs::path& library) {
   return "Rebuild it against the headers of this program, in its own build folder: cmake --build FOLDER";
 }
 
+/// Null: it does not load, and dlerror tells why.
 void* load(const std::string& path) {
   const PluginCall call(&name_library, path.c_str(), 1);
   return dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
 }
+
+/// Libraries for ARGoS use one another's classes without being linked, and are loaded beside one another there.
+constexpr std::string_view kShares = "argos3";
 
 }  // namespace
 
@@ -130,7 +134,17 @@ Status PluginLoader::load_once(const std::string& library) {
   if (!note.ok()) return note.error();
 
   void* handle = load(path);
-  if (handle == nullptr) return Error{"library '" + path + "' does not load: " + why_not_loaded()};
+  if (handle == nullptr) {
+    const std::string why = why_not_loaded();
+    if (note.value().uses(kShares)) {
+      for (const auto& [open, unused] : handles_) {
+        const auto other = read_plugin_note(open);
+        if (other.ok() && other.value().uses(kShares)) dlopen(open.c_str(), RTLD_NOW | RTLD_NOLOAD | RTLD_GLOBAL);
+      }
+      handle = load(path);
+    }
+    if (handle == nullptr) return Error{"library '" + path + "' does not load: " + why};
+  }
   const auto* info = static_cast<const PluginInfo*>(dlsym(handle, "tandem_plugin"));
   if (info == nullptr) {
     dlclose(handle);

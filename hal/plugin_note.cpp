@@ -200,6 +200,18 @@ Error damaged() {
   return Error{"is no whole shared object: it was cut off or damaged; build it again"};
 }
 
+/// Whether the bytes of `word` stand somewhere in the file.
+bool mentions(const Source& source, std::string_view word) {
+  constexpr std::uint64_t kPiece = 1U << 20;
+  std::string piece;
+  for (std::uint64_t at = 0; at < source.size(); at += kPiece) {
+    piece.resize(static_cast<std::size_t>(std::min(source.size() - at, kPiece + word.size())));
+    if (!source.read(at, std::as_writable_bytes(std::span(piece)))) return false;
+    if (piece.find(word) != std::string::npos) return true;
+  }
+  return false;
+}
+
 Result<PluginNote> parse(const Source& source) {
   std::array<unsigned char, EI_NIDENT> ident{};
   if (!source.holds(0, ident.size()) || !source.read(0, std::as_writable_bytes(std::span(ident))) ||
@@ -234,6 +246,11 @@ Result<PluginNote> parse(const Source& source) {
     if (!take_all(bytes, note, built))
       return Error{"has a damaged note .note.tandem; build it again, all of it with one compiler and one Tandem"};
   }
+  if (!built && mentions(source, "N5argos"))  // as the compiler spells names in ARGoS' namespace
+    return Error{
+        "was built for ARGoS 3, not against Tandem. Build it again: in its build folder, "
+        "CMAKE_PREFIX_PATH=PREFIX cmake --fresh …, where PREFIX is lib/tandem of an installation or build/release/lib of "
+        "a checkout; and link it with argos3core_simulator (docs/from-argos-cpp.md)"};
   if (!built)
     return Error{
         "is not a Tandem plug-in, or one of before 0.1.0: it has no note .note.tandem. A plug-in has "

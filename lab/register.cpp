@@ -6,8 +6,8 @@
 namespace tandem::app {
 namespace {
 
-constexpr hal::CommandType kPlugin = {"plugin", module_summary("plugin")};
-constexpr hal::CommandType kCalibrate = {"calibrate", module_summary("calibrate")};
+constexpr hal::CommandType kPlugin = command_of(command_in_table("plugin"));
+constexpr hal::CommandType kCalibrate = command_of(command_in_table("calibrate"));
 
 }  // namespace
 

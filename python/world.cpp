@@ -6,6 +6,7 @@
 #include <pybind11/stl.h>
 
 #include "app/experiment/plugin_folders.hpp"
+#include "app/process/progress.hpp"
 #include "core/config/reader.hpp"
 #include "core/hook/hook.hpp"
 #include "core/schedule/thread_pool.hpp"
@@ -265,6 +266,10 @@ void World::call_policies() {
 }
 
 std::int64_t World::step(std::int64_t ticks) {
+  return step(ticks, nullptr);
+}
+
+std::int64_t World::step(std::int64_t ticks, app::Progress* progress) {
   const Use use(*this, Use::How::Alone);
   if (ticks < 0) throw py::value_error("a world cannot make " + std::to_string(ticks) + " steps");
   if (finished_) throw std::runtime_error("this run is finished; reset() begins it anew");
@@ -284,6 +289,7 @@ std::int64_t World::step(std::int64_t ticks) {
     }
     call_policies();
     Interrupts::look();
+    if (progress != nullptr) progress->step(session_->world->tick() - before);
   }
   raise_failure();
   return session_->world->tick() - before;
@@ -299,7 +305,7 @@ std::int64_t World::steps_left(std::optional<double> until_s) {
   return std::max<std::int64_t>(0, ticks - world.tick());
 }
 
-std::int64_t World::run(std::optional<double> until_s) {
+std::int64_t World::run(std::optional<double> until_s, bool progress) {
   std::int64_t left = 0;
   {
     const Use use(*this);
@@ -309,7 +315,9 @@ std::int64_t World::run(std::optional<double> until_s) {
   }
   std::int64_t done = 0;
   if (left >= 0) {
-    done = step(left);
+    std::optional<app::Progress> shown;
+    if (progress) shown.emplace(left, session_->world->ticks_per_second(), "run");
+    done = step(left, shown ? &*shown : nullptr);
   } else {
     while (session_->world->state() == core::RunState::Running) done += step(1000);
   }
@@ -521,10 +529,11 @@ void bind_world(py::module_& m) {
            py::arg("file"), py::arg("text"), py::arg("seed"), py::arg("threads"), py::arg("parameters"),
            py::arg("controllers"), py::arg("driven"), py::arg("hooks"), py::arg("plugins"), py::arg("record"))
       .def("_start", &World::start)
-      .def("step", &World::step, py::arg("ticks") = 1,
+      .def("step", py::overload_cast<std::int64_t>(&World::step), py::arg("ticks") = 1,
            "Makes so many ticks, fewer where the run ends; returns how many.")
-      .def("run", &World::run, py::arg("until") = py::none(),
-           "Goes on to this time in s, or to the end that the experiment says; returns how many ticks were made.")
+      .def("run", &World::run, py::arg("until") = py::none(), py::arg("progress") = true,
+           "Goes on to this time in s, or to the end that the experiment says; returns how many ticks were made. With "
+           "progress, standard error shows after two seconds how far it is.")
       .def("finish", &World::finish, "Calls the hooks' after_run; run() to the end does it, too.")
       .def("_reset", &World::reset, py::arg("seed"), py::arg("parameters"), py::arg("record"))
       .def("snapshot", &World::snapshot, "Keeps this moment.")
@@ -538,6 +547,11 @@ void bind_world(py::module_& m) {
                              "What was set on top of the experiment, as 'path=value'.")
       .def_property_readonly("has_guests", &World::has_guests, "Whether something of Python takes part.");
   bind_looks(world);
+  py::class_<app::Progress>(m, "Progress", "How far something long is, on standard error.")
+      .def(py::init<std::int64_t, std::int64_t, std::string, std::string>(), py::arg("total"), py::arg("per_unit"),
+           py::arg("name"), py::arg("unit"))
+      .def(
+          "step", [](app::Progress& progress, std::int64_t done) { progress.step(done); }, py::arg("done"));
   py::class_<Group>(m, "Group", "Worlds that are stepped side by side on threads of their own.")
       .def(py::init<std::vector<std::shared_ptr<World>>, std::size_t>(), py::arg("worlds"), py::arg("threads"))
       .def("step", &Group::step, py::arg("ticks") = 1, "Each world makes so many ticks, fewer where its run ends.")

@@ -14,6 +14,10 @@
 #include "python/arrays.hpp"
 #include "python/session.hpp"
 
+namespace tandem::app {
+class Progress;
+}
+
 namespace tandem::python {
 
 namespace py = pybind11;
@@ -62,7 +66,8 @@ class World {
 
   void start();
   std::int64_t step(std::int64_t ticks);
-  std::int64_t run(std::optional<double> until_s);
+  /// `progress`: says how far it is, where that takes more than two seconds.
+  std::int64_t run(std::optional<double> until_s, bool progress);
   void finish();
   /// Leaves the run, and begins another; `record`: of that one.
   void reset(std::optional<std::uint64_t> seed, const std::optional<std::vector<std::string>>& parameters,
@@ -98,6 +103,7 @@ class World {
   void invite(core::Scenario& scenario) const;
   void open_run(const std::string& record);
   void leave_run();
+  std::int64_t step(std::int64_t ticks, app::Progress* progress);
   bool tick_unlocked();
 
   std::shared_ptr<Session> session_;

@@ -156,5 +156,4 @@ int run(const ValidateOptions& options) {
 }  // namespace tandem::validate
 
 constinit const tandem::hal::CommandType tandem::app::validate_command =
-    tandem::hal::command_type<tandem::validate::ValidateOptions, tandem::validate::run>("validate",
-                                                                                        module_summary("validate"));
+    tandem::app::module_command<tandem::validate::ValidateOptions, tandem::validate::run>("validate");

@@ -42,6 +42,7 @@ int check(const CheckOptions& options) {
 
 }  // namespace
 
-constinit const hal::CommandType check_command = hal::command_type<CheckOptions, check>("check", kCheckSummary);
+constinit const hal::CommandType check_command =
+    hal::command_type<CheckOptions, check>("check", kCheckSummary, hal::command_group::kSimulate);
 
 }  // namespace tandem::app

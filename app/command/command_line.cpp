@@ -172,6 +172,7 @@ class Line {
     CLI::App* const parent = space == std::string::npos ? &app_ : app_.get_subcommand(name.substr(0, space));
     candidate.app = parent->add_subcommand(name.substr(space == std::string::npos ? 0 : space + 1),
                                            printable(std::string(type.summary)));
+    if (parent == &app_) candidate.app->group(printable(std::string(type.group)));
     if (type.make == nullptr) {  // a group, or of a module that is not loaded
       candidate.app->require_subcommand(1);
       return;
@@ -205,6 +206,7 @@ class Line {
     std::string what = e.what();
     if (e.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError))
       what = too_many(*at, what.substr(what.rfind(':') + 2));
+    if (const std::size_t found = what.find(" not in {"); found != std::string::npos) what = no_choice(what, found);
     if (const std::size_t found = what.find(" not in range 0.000000 to 1797"); found != std::string::npos)
       what = what.substr(0, found) + " is too small";  // instead of the 309 digits of the largest number
     if (app_.get_subcommands().empty() && !app_.remaining().empty()) what = no_command(app_.remaining().front());
@@ -214,6 +216,17 @@ class Line {
   int exit(const CLI::Error& e) const { return app_.exit(e); }
 
  private:
+  /// Of "command: nonsense not in {start,pause}", whose choices begin behind `at`.
+  static std::string no_choice(const std::string& what, std::size_t at) {
+    const std::size_t begin = what.find('{', at) + 1;
+    std::istringstream in(what.substr(begin, what.rfind('}') - begin));
+    std::vector<std::string> known;
+    for (std::string one; std::getline(in, one, ',');) known.push_back(one);
+    const std::size_t colon = what.find(": ");
+    const std::size_t word = colon < at ? colon + 2 : 0;
+    const std::string given = what.substr(word, at - word);
+    return what.substr(0, word) + "'" + given + "' is none of " + hal::listed(known) + hal::did_you_mean(given, known);
+  }
   /// Of words that the command does not take, the last first as CLI11 lists them: an option before a word.
   static std::string too_many(const CLI::App& command, const std::string& listed) {
     std::istringstream in(listed);
@@ -314,8 +327,9 @@ int run_command_line(int argc, char** argv, const Program& program) {
     if (const hal::Status good = find_commands(words, known); !good.ok())
       return complain(kBadInput, good.error().message);
     Line line(program);
-    const auto named = known.of(words.command());
-    for (const hal::CommandType* type : named.empty() ? known.all() : named) line.add(*type, known.origin_of(*type));
+    std::vector<const hal::CommandType*> types = known.of(words.command());
+    if (types.empty()) types = by_group(known.all());
+    for (const hal::CommandType* type : types) line.add(*type, known.origin_of(*type));
     return parse_and_run(line, words, known);
   } catch (const std::bad_alloc&) {
     return complain(kFailedRunning, "out of memory");

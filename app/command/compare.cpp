@@ -8,6 +8,7 @@
 #include "app/experiment/plugins.hpp"
 #include "app/experiment/reading.hpp"
 #include "app/outputs/state_dump.hpp"
+#include "app/process/progress.hpp"
 #include "app/process/signals.hpp"
 #include "app/process/terminal.hpp"
 #include "core/sim/world.hpp"
@@ -56,6 +57,8 @@ class Side {
   /// Of the values, where that is cheaper than they are.
   virtual std::optional<std::uint64_t> fingerprint() const { return std::nullopt; }
   virtual std::string why_ended() const { return {}; }
+  /// Its last tick; 0: not known.
+  virtual hal::Tick last() const { return 0; }
 
   std::string name;
   std::string error;  ///< what went wrong on the way
@@ -86,6 +89,7 @@ class Run final : public Side {
     return true;
   }
   hal::Tick tick() const override { return world_->tick(); }
+  hal::Tick last() const override { return world_->tick() + steps_left_; }
   std::vector<core::StateValue> values() const override { return core::state_values(world_->state_view()); }
   std::optional<std::uint64_t> fingerprint() const override { return world_->state_hash(); }
   std::string why_ended() const override {
@@ -182,12 +186,13 @@ void print_differences(const std::vector<core::StateDifference>& all) {
 }
 
 /// Whether both are alike at this moment; says what differs.
-bool same(const Side& a, const Side& b, std::optional<hal::Tick> last_equal) {
+bool same(const Side& a, const Side& b, std::optional<hal::Tick> last_equal, std::optional<Progress>& progress) {
   const auto print_a = a.fingerprint();
   const auto print_b = b.fingerprint();
   if (print_a && print_b && *print_a == *print_b) return true;
   const auto found = core::differences(a.values(), b.values());
   if (found.empty() && !(print_a && print_b)) return true;
+  progress.reset();
   fmt::print("A: {}\nB: {}\n", printable(a.name), printable(b.name));
   if (last_equal) fmt::print("equal until tick {}\n", *last_equal);
   fmt::print("tick {}: {}\n", a.tick(),
@@ -211,8 +216,11 @@ int compare_sides(Side& a, Side& b) {
   const std::atomic<bool>& stop = catch_signals();
   std::optional<hal::Tick> equal;
   std::int64_t moments = 0;
+  const std::int64_t end = std::max(a.last(), b.last());
+  std::optional<Progress> progress(std::in_place, end, 1, "compare", "ticks");
   for (;;) {
     if (stop.load(std::memory_order_relaxed)) return interrupted_code();
+    if (end > 0) progress->step(equal.value_or(0));
     const bool a_goes_on = a.next();
     const bool b_goes_on = b.next();
     const bool both = a_goes_on && b_goes_on && meet(a, b);
@@ -220,6 +228,7 @@ int compare_sides(Side& a, Side& b) {
       if (!side->error.empty()) return complain(kBadInput, side->error);
     }
     if (!both) {
+      progress.reset();
       const bool runs = a.fingerprint() && b.fingerprint();
       if (!runs || a_goes_on == b_goes_on) break;
       const Side& ended = a_goes_on ? b : a;
@@ -227,7 +236,7 @@ int compare_sides(Side& a, Side& b) {
                  printable(ended.why_ended()));
       return kDifferent;
     }
-    if (!same(a, b, equal)) return kDifferent;
+    if (!same(a, b, equal, progress)) return kDifferent;
     equal = a.tick();
     ++moments;
   }
@@ -249,6 +258,6 @@ int compare(const CompareOptions& options) {
 }  // namespace
 
 constinit const hal::CommandType compare_command = hal::command_type<CompareOptions, compare>(
-    "compare", "Name the first tick and the values in which two runs differ.");
+    "compare", "Name the first tick and the values in which two runs differ.", hal::command_group::kStudy);
 
 }  // namespace tandem::app

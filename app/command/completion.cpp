@@ -232,6 +232,7 @@ int completion(const Completion& options, const hal::CommandContext& context) {
 }  // namespace
 
 constinit const hal::CommandType completion_command = hal::command_type<Completion, completion>(
-    "completion", "Print a script by which a shell completes commands, options, files and names.");
+    "completion", "Print a script by which a shell completes commands, options, files and names.",
+    hal::command_group::kTools);
 
 }  // namespace tandem::app

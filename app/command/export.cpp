@@ -10,6 +10,7 @@
 #include "app/experiment/plugins.hpp"
 #include "app/outputs/report.hpp"
 #include "app/outputs/state_dump.hpp"
+#include "app/process/progress.hpp"
 #include "app/process/terminal.hpp"
 #include "core/record/csv_table.hpp"
 #include "core/record/record_reader.hpp"
@@ -41,6 +42,7 @@ hal::Result<core::CsvTable> columns_of(const ExportOptions& options, const std::
   core::CsvTable table(ticks_per_second(reader.start()));
   std::vector<std::string> tables;
   while (const auto entry = reader.next()) {
+    options.looked_at(reader, entry->tick);
     if (!entry->rows) continue;
     if (const std::string here = entry->rows->stream().title();
         std::find(tables.begin(), tables.end(), here) == tables.end())
@@ -64,6 +66,7 @@ hal::Status write_csv(const ExportOptions& options) {
   const auto wanted = [&options](const std::string& id) { return options.wants(id); };
   std::string out = table.value().header();
   while (const auto entry = again.value().next()) {
+    options.looked_at(again.value(), entry->tick);
     if (!entry->rows || entry->rows->stream().title() != title || !options.wants(entry->tick)) continue;
     table.value().append(entry->tick, *entry->rows, wanted, out);
     if (out.size() < kBufferBytes) continue;
@@ -79,6 +82,7 @@ hal::Status write_report(const ExportOptions& options) {
   auto reader = core::RecordReader::open(options.record);
   if (!reader.ok()) return reader.error();
   while (const auto entry = reader.value().next()) {
+    options.looked_at(reader.value(), entry->tick);
     if (entry->type == core::RecordBlock::End)
       return hal::write_whole_file(options.report, "report", hal::to_text(entry->json) + "\n");
   }
@@ -98,6 +102,7 @@ hal::Status write_dump(const ExportOptions& options) {
   const auto state = [&record] { return core::StateView{record.space().stores(), record.seed(), record.ticks_done()}; };
   std::optional<hal::Tick> last;
   do {
+    if (options.at_tick) options.at_tick(record.ticks_done() - 1, record.moments().ticks().back());
     if (!options.wants(record.ticks_done() - 1)) continue;
     last = record.ticks_done();
     if (const hal::Status written = dump.value().tick_done(state()); !written.ok()) return written;
@@ -120,6 +125,7 @@ hal::Status print_contents(const ExportOptions& options) {
   std::size_t events = 0, fingerprints = 0;
   std::string end;
   while (const auto entry = reader.next()) {
+    options.looked_at(reader, entry->tick);
     events += entry->type == core::RecordBlock::Event ? 1 : 0;
     fingerprints += entry->type == core::RecordBlock::Fingerprint ? 1 : 0;
     if (entry->type == core::RecordBlock::End) end = hal::text_of(entry->json, "ended", "?");
@@ -171,6 +177,28 @@ void ExportOptions::describe(hal::CommandLine& line) {
 
 namespace {
 
+hal::Status write_all(const ExportOptions& options) {
+  if (options.csv.empty() && options.hdf5.empty() && options.report.empty() && options.dump.empty())
+    return print_contents(options);
+  hal::Status done;
+  if (!options.csv.empty()) done = write_csv(options);
+  if (done.ok() && !options.hdf5.empty()) done = write_hdf5(options);
+  if (done.ok() && !options.report.empty()) done = write_report(options);
+  if (done.ok() && !options.dump.empty()) done = write_dump(options);
+  return done;
+}
+
+/// Says how far each way through the record is.
+hal::Status write_with_progress(ExportOptions options) {
+  std::optional<Progress> progress;
+  std::int64_t before = 0;
+  options.at_tick = [&](std::int64_t tick, std::int64_t last) {
+    if (!progress || tick < before) progress.emplace(std::max<std::int64_t>(1, last), 1, "export", "ticks");
+    progress->step(before = tick);
+  };
+  return write_all(options);
+}
+
 int export_record(const ExportOptions& options) {
   if (const hal::Status apart = check_apart(
           {{"table", options.csv}, {"HDF5 file", options.hdf5}, {"report", options.report}, {"dump", options.dump}},
@@ -182,18 +210,13 @@ int export_record(const ExportOptions& options) {
     if (done.ok()) done = keep_old(*path);
   }
   if (!done.ok()) return complain(kFailedRunning, done.error().message);
-  if (options.csv.empty() && options.hdf5.empty() && options.report.empty() && options.dump.empty())
-    done = print_contents(options);
-  if (!options.csv.empty()) done = write_csv(options);
-  if (done.ok() && !options.hdf5.empty()) done = write_hdf5(options);
-  if (done.ok() && !options.report.empty()) done = write_report(options);
-  if (done.ok() && !options.dump.empty()) done = write_dump(options);
+  done = write_with_progress(options);
   return done.ok() ? kDone : complain(kBadInput, done.error().message);
 }
 
 }  // namespace
 
 constinit const hal::CommandType export_command = hal::command_type<ExportOptions, export_record>(
-    "export", "Say what a record of `tandem run --record` holds, or make a table of it.");
+    "export", "Say what a record of `tandem run --record` holds, or make a table of it.", hal::command_group::kStudy);
 
 }  // namespace tandem::app

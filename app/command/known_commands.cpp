@@ -1,6 +1,7 @@
 #include "app/command/known_commands.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include "app/catalog.hpp"
 #include "app/experiment/plugin_folders.hpp"
@@ -25,6 +26,22 @@ bool begins_with(const hal::CommandType& type, std::string_view word) {
 }
 
 }  // namespace
+
+std::vector<const hal::CommandType*> by_group(std::vector<const hal::CommandType*> types) {
+  namespace group = hal::command_group;
+  std::map<std::string_view, std::string_view> group_of;
+  std::vector<std::string_view> order(group::kAll.begin(), group::kAll.end());
+  for (const hal::CommandType* type : types) {
+    group_of[type->name] = type->group;
+    if (std::ranges::find(order, type->group) == order.end()) order.push_back(type->group);
+  }
+  const auto place = [&](const hal::CommandType* type) {
+    const auto parent = group_of.find(type->name.substr(0, type->name.find(' ')));
+    return std::ranges::find(order, parent == group_of.end() ? type->group : parent->second) - order.begin();
+  };
+  std::ranges::stable_sort(types, {}, place);
+  return types;
+}
 
 KnownCommands::KnownCommands(void (*register_commands)(hal::Registrar&))
     : register_commands_(register_commands), inside_(with_commands({}, register_commands)) {}

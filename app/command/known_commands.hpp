@@ -10,6 +10,9 @@
 
 namespace tandem::app {
 
+/// By heading, in the order of help; under each as they were. Commands of a command stand under its heading.
+std::vector<const hal::CommandType*> by_group(std::vector<const hal::CommandType*> types);
+
 /// Begins with the program's own commands; libraries are opened when they are asked for.
 class KnownCommands final : public hal::CommandContext {
  public:

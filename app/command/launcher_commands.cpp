@@ -60,13 +60,15 @@ hal::Result<int> run_nothing(const Launcher& /*unused*/) {
   return hal::Error{"this is a command of the launcher at the top of a checkout"};
 }
 
+constexpr std::string_view kGroup = "Launcher";
+
 constexpr std::array<hal::CommandType, 6> kCommands = {
-    hal::command_type<Build, run_nothing>("build", "Only build."),
-    hal::command_type<Docs, run_nothing>("docs", "Make the documentation a site that can be searched."),
-    hal::command_type<Format, run_nothing>("format", "Rewrite every source file in the project's style."),
-    hal::command_type<Package, run_nothing>("package", "Make Debian packages."),
-    hal::command_type<Python, run_nothing>("python", "Run the machine's Python with `import tandem`."),
-    hal::command_type<Test, run_nothing>("test", "Build and run the whole test suite."),
+    hal::command_type<Build, run_nothing>("build", "Only build.", kGroup),
+    hal::command_type<Docs, run_nothing>("docs", "Make the documentation a site that can be searched.", kGroup),
+    hal::command_type<Format, run_nothing>("format", "Rewrite every source file in the project's style.", kGroup),
+    hal::command_type<Package, run_nothing>("package", "Make Debian packages.", kGroup),
+    hal::command_type<Python, run_nothing>("python", "Run the machine's Python with `import tandem`.", kGroup),
+    hal::command_type<Test, run_nothing>("test", "Build and run the whole test suite.", kGroup),
 };
 
 }  // namespace

@@ -203,7 +203,7 @@ void describe_params(const hal::ControllerType& type, hal::ParamVisitor& manual)
   (void)type.read_params(manual);
 }
 void describe_params(const core::HookType& type, hal::ParamVisitor& manual) {
-  type.describe(manual);
+  if (type.describe != nullptr) type.describe(manual);
 }
 
 template <class T>
@@ -445,8 +445,8 @@ int describe(const DescribeOptions& options, const hal::CommandContext& context)
 }  // namespace
 
 constinit const hal::CommandType list_command = hal::command_type<ListOptions, list>(
-    "list", "List what there is: controllers, hooks, devices, engines, robots, elements.");
+    "list", "List what there is: controllers, hooks, devices, engines, robots, elements.", hal::command_group::kExtend);
 constinit const hal::CommandType describe_command = hal::command_type<DescribeOptions, describe>(
-    "describe", "Print the manual of a controller, device, robot, hook or element.");
+    "describe", "Print the manual of a controller, device, robot, hook or element.", hal::command_group::kExtend);
 
 }  // namespace tandem::app

@@ -113,12 +113,14 @@ std::string synopsis(const CommandManual& manual) {
   return fmt::format(".SH SYNOPSIS\n.B tandem {}\n{}\n", roff(manual.name), line);
 }
 
-/// A command's name and summary, for those of `group`.
-std::string commands_of(const Manuals& manuals, const std::string& group, bool of_launcher) {
-  std::string text;
+/// A command's name and summary, for those of `group`; with headings where that is the whole program.
+std::string commands_of(const Manuals& manuals, const std::string& group) {
+  std::string text, heading;
   for (const CommandManual& m : manuals) {
-    if (m.group() == group && m.of_launcher == of_launcher)
-      text += fmt::format(".TP\n.BR {} (1)\n{}\n", roff(page_name(m.name)), roff(m.summary));
+    if (m.group() != group) continue;
+    if (group.empty() && heading != m.heading) text += ".SS " + roff(m.heading) + "\n";
+    heading = m.heading;
+    text += fmt::format(".TP\n.BR {} (1)\n{}\n", roff(page_name(m.name)), roff(m.summary));
   }
   return text;
 }
@@ -129,7 +131,7 @@ std::string page_of(const CommandManual& manual, const Manuals& manuals) {
   if (manual.of_launcher) text += ".PP\nThis is a command of the launcher at the top of a checkout.\n";
   if (!manual.line.footer().empty()) text += ".PP\n" + roff(manual.line.footer()) + "\n";
   text += items(manual, true, "ARGUMENTS") + items(manual, false, "OPTIONS");
-  if (manual.command == nullptr) text += ".SH COMMANDS\n" + commands_of(manuals, manual.name, false);
+  if (manual.command == nullptr) text += ".SH COMMANDS\n" + commands_of(manuals, manual.name);
   return text + ".SH SEE ALSO\n.BR tandem (1)\n";
 }
 
@@ -137,7 +139,7 @@ std::string main_page(const Manuals& manuals) {
   return page_begin("tandem", "one controller drives simulated robots, real ones, and both together") +
          ".SH SYNOPSIS\n.B tandem\n[\\fB\\-\\-plugin\\fR \\fIFILE\\fR] \\fICOMMAND\\fR [\\fIOPTIONS\\fR]\n"
          ".SH DESCRIPTION\nEach command has a page of its own.\n.SH COMMANDS\n" +
-         commands_of(manuals, "", false) + ".SH COMMANDS OF THE LAUNCHER\n" + commands_of(manuals, "", true) +
+         commands_of(manuals, "") +
          ".SH EXIT STATUS\n0 done, 1 bad input, 2 wrong usage, 3 failed, 4 different.\n"
          ".SH ENVIRONMENT\n.TP\n.B TANDEM_PLUGIN_PATH\nFolders with plug\\-ins, separated by colons.\n";
 }
@@ -171,6 +173,7 @@ int man(const Man& options, const hal::CommandContext& context) {
 
 }  // namespace
 
-constinit const hal::CommandType man_command = hal::command_type<Man, man>("man", "Write manual pages, one a command.");
+constinit const hal::CommandType man_command =
+    hal::command_type<Man, man>("man", "Write manual pages, one a command.", hal::command_group::kTools);
 
 }  // namespace tandem::app

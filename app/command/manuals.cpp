@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <sstream>
 
+#include "app/command/known_commands.hpp"
 #include "app/command/launcher_commands.hpp"
 
 namespace tandem::app {
 namespace {
 
 CommandManual manual_of(const hal::CommandType& type, bool of_launcher) {
-  CommandManual manual{std::string(type.name), std::string(type.summary), of_launcher, nullptr, {}};
+  CommandManual manual{
+      std::string(type.name), std::string(type.summary), std::string(type.group), of_launcher, nullptr, {}};
   if (type.make == nullptr) return manual;
   manual.command = type.make();
   manual.command->describe(manual.line);
@@ -37,7 +39,7 @@ std::string CommandManual::last_word() const {
 
 std::vector<CommandManual> command_manuals(const hal::Catalog& catalog) {
   std::vector<CommandManual> all;
-  for (const hal::CommandType* type : catalog.all<hal::CommandType>()) all.push_back(manual_of(*type, false));
+  for (const hal::CommandType* type : by_group(catalog.all<hal::CommandType>())) all.push_back(manual_of(*type, false));
   for (const hal::CommandType& type : launcher_commands()) all.push_back(manual_of(type, true));
   return all;
 }

@@ -11,7 +11,7 @@ namespace tandem::app {
 
 /// A command as it describes itself. One that only holds others ("plugin") has no `command`.
 struct CommandManual {
-  std::string name, summary;
+  std::string name, summary, heading;
   bool of_launcher = false;
   std::unique_ptr<hal::CommandCall> command;  ///< holds the values of `line`
   hal::CommandLine line;
@@ -22,7 +22,7 @@ struct CommandManual {
   std::string last_word() const;
 };
 
-/// Those of the catalog, then those of the launcher.
+/// Those of the catalog, by heading, then those of the launcher.
 std::vector<CommandManual> command_manuals(const hal::Catalog& catalog);
 
 /// "-o" and "--output" of "-o,--output".

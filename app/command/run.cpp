@@ -60,6 +60,7 @@ int run_line(const RunLine& line) {
 
 }  // namespace
 
-constinit const hal::CommandType run_command = hal::command_type<RunLine, run_line>("run", "Run an experiment.");
+constinit const hal::CommandType run_command =
+    hal::command_type<RunLine, run_line>("run", "Run an experiment.", hal::command_group::kSimulate);
 
 }  // namespace tandem::app

@@ -118,7 +118,9 @@ void describe_run(hal::CommandLine& line, RunOptions& o) {
       .show_default();
   line.option("--without", o.without, "Simulate this robot instead of driving the real one; repeatable").repeatable();
   line.flag("--quiet", o.quiet, "No table at the end");
-  describe_watch(line, o.watch, "A live table of the run on the terminal; keys pause it and more");
+  describe_watch(line, o.watch,
+                 "A live table and map of the run on the terminal, in real time unless the file says else; keys pause "
+                 "it and more");
   describe_hub_faults(line, o.hub_faults, "With real robots: a");
   describe_plugins(line, o.plugins);
   describe_window(line, o);

@@ -67,6 +67,7 @@ int upgrade(const UpgradeOptions& options) {
 
 constinit const hal::CommandType upgrade_command = hal::command_type<UpgradeOptions, upgrade>(
     "upgrade",
-    "Rewrite an experiment file in this program's vocabulary; layout and comments stay, the old file as FILE.bak.");
+    "Rewrite an experiment file in this program's vocabulary; layout and comments stay, the old file as FILE.bak.",
+    hal::command_group::kTools);
 
 }  // namespace tandem::app

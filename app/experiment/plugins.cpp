@@ -136,6 +136,9 @@ bool ExperimentReading::has_real_robots(const std::vector<std::string>& without)
 std::optional<core::Scenario> ExperimentReading::read() {
   if (!file_ || !open_those(false)) return std::nullopt;
   core::Problems problems;
+  const core::Element* const framework = file_->root.child("framework");
+  const core::Element* const time = framework != nullptr ? framework->child("time") : nullptr;
+  says_pace_ = time != nullptr && time->attribute("mode") != nullptr;
   auto scenario = core::read_experiment(std::move(*file_), loader_.catalog(), problems);
   file_.reset();
   if (scenario) {

@@ -47,6 +47,8 @@ class ExperimentReading {
   bool has_real_robots(const std::vector<std::string>& without) const;
   /// Opens the other plug-ins, and judges the file by the catalog that is then complete.
   std::optional<core::Scenario> read();
+  /// Whether the file, or what changed it, said how fast its run goes: <time mode="…"/>. Once it is read.
+  bool says_pace() const noexcept { return says_pace_; }
 
  private:
   struct Library {
@@ -63,6 +65,7 @@ class ExperimentReading {
   std::vector<Library> libraries_;
   std::string path_;
   std::optional<core::ExperimentFile> file_;
+  bool says_pace_ = false;
 };
 
 /// The parts that a file adds to those of the loader: its plug-ins, which are opened, and its kinds of robots. The rest

@@ -7,10 +7,12 @@
 #include <functional>
 #include <map>
 #include <numbers>
+#include <optional>
 
 #include "app/command/command.hpp"
 #include "app/module/module_table.hpp"
 #include "app/outputs/report.hpp"
+#include "app/process/progress.hpp"
 #include "app/process/signals.hpp"
 #include "bridges/calibration/lens_fit.hpp"
 #include "bridges/calibration/place_fit.hpp"
@@ -237,7 +239,9 @@ int calibrate_board(const CalibrateOptions& o) {
   const auto page = core::render(svg.value(), format.value());
   if (!page.ok()) return fail(page.error().message, kFailedRunning);
   const std::string json = std::filesystem::path(o.out).replace_extension(".json").string();
-  hal::Status done = hal::write_whole_file(o.out, "board", page.value());
+  hal::Status done = keep_old(o.out);
+  if (done.ok()) done = keep_old(json);
+  if (done.ok()) done = hal::write_whole_file(o.out, "board", page.value());
   if (done.ok()) done = calibration::write_board(json, board);
   if (!done.ok()) return fail(done.error().message, kFailedRunning);
   fmt::print("{}: print it at 100 %, check the line at its foot, glue it onto something flat; {} is for --board\n",
@@ -251,6 +255,7 @@ int calibrate_camera(const CalibrateOptions& o) {
   std::vector<calibration::View> views;
   std::size_t width = 0, height = 0;
   std::int64_t seen = 0, alike = 0;
+  std::optional<Progress> progress(std::in_place, o.most, 1, "calibrate", "views");
   const hal::Status looked =
       look_at_frames(o.frames, board.value().family, o.every,
                      [&](std::int64_t number, const frames::Frame& frame, std::vector<Detection> tags) {
@@ -265,10 +270,10 @@ int calibrate_camera(const CalibrateOptions& o) {
                        alike += known ? 1 : 0;
                        if (known) return true;
                        views.push_back(std::move(view));
-                       fmt::print(stderr, "\rview {} of {} \033[K", views.size(), o.most);
+                       progress->step(static_cast<std::int64_t>(views.size()));
                        return static_cast<std::int64_t>(views.size()) < o.most;
                      });
-  if (!views.empty()) fmt::print(stderr, "\n");
+  progress.reset();
   if (!looked.ok()) return fail(looked.error().message);
   if (views.size() < calibration::kFewestViews)
     return fail(
@@ -280,7 +285,8 @@ int calibrate_camera(const CalibrateOptions& o) {
   const auto& f = fit.value();
   for (const std::string& name : f.left_out)
     fmt::print(stderr, "warning: {} does not fit the others: left out\n", name);
-  const hal::Status written = camera::write_camera_file(o.out, {f.lens, f.rms_px, f.views, {}, 0.0});
+  hal::Status written = keep_old(o.out);
+  if (written.ok()) written = camera::write_camera_file(o.out, {f.lens, f.rms_px, f.views, {}, 0.0});
   if (!written.ok()) return fail(written.error().message, kFailedRunning);
   fmt::print(
       "{}: from {} views, {:.2f} pixels RMS; focal lengths {:.1f} and {:.1f} (+-{:.1f}), centre {:.1f}, {:.1f} "
@@ -331,8 +337,9 @@ int calibrate_arena(const CalibrateOptions& o) {
   file.value().place = f.place;
   file.value().place_residual_px = f.rms_px;
   const std::string out = o.out.empty() ? o.camera : o.out;
-  if (const hal::Status written = camera::write_camera_file(out, file.value()); !written.ok())
-    return fail(written.error().message, kFailedRunning);
+  hal::Status written = keep_old(out);
+  if (written.ok()) written = camera::write_camera_file(out, file.value());
+  if (!written.ok()) return fail(written.error().message, kFailedRunning);
   const hal::Vector3 forward = f.place.q_WC * hal::Vector3::UnitZ();
   fmt::print(
       "{}: the camera hangs at {:.3f}, {:.3f}, {:.3f} m (+-{:.1f} mm), {:.1f} degrees from straight down; {} tags, "
@@ -346,10 +353,10 @@ int calibrate_arena(const CalibrateOptions& o) {
 }  // namespace
 
 constinit const hal::CommandType calibrate_board_command =
-    hal::command_type<BoardOptions, calibrate_board>("calibrate board", module_summary("calibrate board"));
+    module_command<BoardOptions, calibrate_board>("calibrate board");
 constinit const hal::CommandType calibrate_camera_command =
-    hal::command_type<CameraOptions, calibrate_camera>("calibrate camera", module_summary("calibrate camera"));
+    module_command<CameraOptions, calibrate_camera>("calibrate camera");
 constinit const hal::CommandType calibrate_arena_command =
-    hal::command_type<ArenaOptions, calibrate_arena>("calibrate arena", module_summary("calibrate arena"));
+    module_command<ArenaOptions, calibrate_arena>("calibrate arena");
 
 }  // namespace tandem::app

@@ -9,6 +9,7 @@
 #include "app/lab/recorded.hpp"
 #include "app/module/module_table.hpp"
 #include "app/outputs/report.hpp"
+#include "app/process/progress.hpp"
 #include "app/process/terminal.hpp"
 #include "core/config/fitted.hpp"
 #include "hal/device/fitted.hpp"
@@ -264,7 +265,9 @@ bool fit_record(const std::string& path, const FitOptions& options, std::vector<
     radius_m.push_back(kind != nullptr ? kind->body.radius_m : 0.0);
   }
   const mixed_reality::Surroundings surroundings(run, radius_m);
+  Progress progress(static_cast<std::int64_t>(run.robots.size()), 1, "fit of '" + path + "'", "robots");
   for (std::size_t i = 0; i < run.robots.size(); ++i) {
+    progress.step(static_cast<std::int64_t>(i));
     const RecordedRobot& robot = run.robots[i];
     if (!is_meant(robot, run, options.robots)) continue;
     RobotFit fit{robot.id, robot.kind, path, {}, {}};
@@ -333,6 +336,6 @@ int fit(const FitOptions& options) {
 
 }  // namespace
 
-constinit const hal::CommandType fit_command = hal::command_type<FitOptions, fit>("fit", module_summary("fit"));
+constinit const hal::CommandType fit_command = module_command<FitOptions, fit>("fit");
 
 }  // namespace tandem::app

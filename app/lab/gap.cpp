@@ -13,6 +13,7 @@
 #include "app/outputs/run_record.hpp"
 #include "app/process/signals.hpp"
 #include "app/process/terminal.hpp"
+#include "app/run/time_parts.hpp"
 #include "core/run/run.hpp"
 #include "core/sim/world.hpp"
 #include "mixed_reality/gap/measures.hpp"
@@ -32,7 +33,7 @@ struct GapOptions {
   void describe(hal::CommandLine& line) {
     line.footer(
         "Without a second record the run of the first is made again, with its real robots simulated from where they "
-        "began.");
+        "began. A report that stands in the place of the new one is kept as FILE.bak.");
     line.word("record", record, "The record of what really happened").required().file();
     line.word("other", other, "Another record, to be compared with it instead of a simulation").file();
     line.option("--robots", robots, "Only these, separated by commas; '*' stands for any text; default: real ones")
@@ -105,6 +106,8 @@ hal::Status simulate(Recorded& recorded, const GapOptions& options, const std::s
   core::Run run(*world, catch_signals());
   run.add(std::make_unique<core::Length>(recorded.run.first + static_cast<hal::Tick>(recorded.run.ticks)));
   run.add(std::move(record).value());
+  run.add(progress_part(recorded.run.first + static_cast<hal::Tick>(recorded.run.ticks), world->ticks_per_second(),
+                        "simulating"));
   (void)run.go();
   if (run.stopped()) return hal::Error{"interrupted"};
   const std::string& failure = world->failure().empty() ? run.failure() : world->failure();
@@ -164,6 +167,6 @@ int gap(const GapOptions& options) {
 
 }  // namespace
 
-constinit const hal::CommandType gap_command = hal::command_type<GapOptions, gap>("gap", module_summary("gap"));
+constinit const hal::CommandType gap_command = module_command<GapOptions, gap>("gap");
 
 }  // namespace tandem::app

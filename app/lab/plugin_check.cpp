@@ -111,6 +111,6 @@ int plugin_check(const PluginCheckOptions& options, const hal::CommandContext& c
 }  // namespace
 
 constinit const hal::CommandType plugin_check_command =
-    hal::command_type<PluginCheckOptions, plugin_check>("plugin check", module_summary("plugin check"));
+    module_command<PluginCheckOptions, plugin_check>("plugin check");
 
 }  // namespace tandem::app

@@ -197,7 +197,6 @@ int plugin_new(const PluginNewOptions& options) {
 
 }  // namespace
 
-constinit const hal::CommandType plugin_new_command =
-    hal::command_type<PluginNewOptions, plugin_new>("plugin new", module_summary("plugin new"));
+constinit const hal::CommandType plugin_new_command = module_command<PluginNewOptions, plugin_new>("plugin new");
 
 }  // namespace tandem::app

@@ -6,6 +6,7 @@
 #include "app/exit_code.hpp"
 #include "app/experiment/plugin_folders.hpp"
 #include "app/experiment/plugins.hpp"
+#include "app/outputs/report.hpp"
 #include "app/process/terminal.hpp"
 #include "core/record/pattern.hpp"
 #include "hal/output_file.hpp"
@@ -34,6 +35,7 @@ std::optional<Recorded> open_recorded(const std::string& path, const std::vector
 }
 
 hal::Status write_text(const std::string& path, const std::string& what, const std::string& text) {
+  if (hal::Status kept = keep_old(path); !kept.ok()) return kept;
   auto file = hal::OutputFile::open(path, what);
   if (!file.ok()) return file.error();
   if (const hal::Status written = file.value().write(text); !written.ok()) return written;

@@ -27,6 +27,7 @@ struct Recorded {
 std::optional<Recorded> open_recorded(const std::string& path, const std::vector<std::string>& plugins,
                                       const std::vector<std::string>& overrides = {});
 
+/// A file in its place is kept as FILE.bak.
 hal::Status write_text(const std::string& path, const std::string& what, const std::string& text);
 
 /// Whether the commands of the gap mean a robot: one of these ids or patterns with '*'; without any, a real one, or

@@ -68,7 +68,8 @@ core::LiveOptions options_of(const RunPlan& plan) {
     };
   }
   live.speed = options.hold.speed;
-  if (!live.speed && plan.world->scenario().time_mode == core::TimeMode::Realtime) live.speed = 1.0;
+  const bool to_follow = options.watch.watch && !plan.reading.says_pace() && !plan.replays();
+  if (!live.speed && (plan.world->scenario().time_mode == core::TimeMode::Realtime || to_follow)) live.speed = 1.0;
   live.real_robots = real != nullptr;
   live.stay = options.hold.stay;
   live.can_go_back = options.hold.wanted || options.view.on;

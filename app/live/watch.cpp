@@ -140,7 +140,11 @@ void Watch::Impl::wish(const std::function<void(WatchWish&)>& change) {
 void Watch::Impl::draw() {
   const Screen::Size size = screen->size();
   const std::size_t rows = rows_of(page, size);
-  wish([&](WatchWish& w) { w.rows = rows; });
+  const Screen::Size map = map_room(page, size);
+  wish([&](WatchWish& w) {
+    w.rows = rows;
+    w.map = map;
+  });
   page.prompt = typed ? "robots: " + printable(*typed) + "_" : std::string();
   screen->show(lay_out(page, size));
 }

@@ -1,4 +1,4 @@
-// `--watch`: a live table of a run, or of a record, on a terminal, or lines where there is none.
+// `--watch`: a live table and map of a run, or of a record, on a terminal, or lines where there is none.
 #pragma once
 #include <functional>
 #include <memory>

@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 
+#include "app/live/watch_map.hpp"
 #include "app/outputs/roll_lines.hpp"
 #include "app/process/terminal.hpp"
 #include "core/record/trajectory.hpp"
@@ -17,6 +18,7 @@ namespace {
 constexpr std::size_t kLinesWithMessages = 14;  // of a screen: smaller ones have the newest message alone
 constexpr std::size_t kMostMessages = 6;
 constexpr std::size_t kMostNumbers = 32;  // of one field
+constexpr std::size_t kLinesOfMap = 20;   // at most, with its frame
 
 std::string values_of(const hal::PortType& type, const void* port) {
   std::string all;
@@ -99,7 +101,8 @@ ScreenLine line_of(const WatchMoment::Robot& robot, std::size_t id_columns, bool
 
 struct Layout {
   std::size_t real = 0, robots = 0, messages = 0;
-  std::vector<ScreenLine> roll;  // real robots in groups: all of them, before anything else gets a line
+  std::size_t map_room = 0, map = 0;  // lines that it may have, and has
+  std::vector<ScreenLine> roll;       // real robots in groups: all of them, before anything else gets a line
 };
 
 std::vector<ScreenLine> lines_of_roll(const WatchPage& page, Screen::Size size) {
@@ -123,7 +126,11 @@ Layout layout_of(const WatchPage& page, Screen::Size size) {
       std::min({page.messages.size(), left, size.lines < kLinesWithMessages ? std::size_t{1} : kMostMessages});
   left -= layout.messages;
   layout.real = std::min(page.moment.real.size(), left / 2);
-  layout.robots = left - layout.real;
+  left -= layout.real;
+  layout.map_room =
+      std::min(left - std::min(std::max<std::size_t>(1, page.moment.chosen), (left + 1) / 2), kLinesOfMap);
+  layout.map = page.moment.map.size() <= layout.map_room ? page.moment.map.size() : 0;
+  layout.robots = left - layout.map;
   return layout;
 }
 
@@ -166,6 +173,7 @@ WatchMoment WatchEye::look(const WatchSight& now, const WatchWish& wish) {
   moment.kinds.assign(by_name.begin(), by_name.end());
   const std::vector<core::RobotId>& all = chosen(space, wish.robots);
   moment.chosen = all.size();
+  moment.map = arena_map(space, wish.map);
   moment.first = std::min(wish.first, all.size() > wish.rows ? all.size() - wish.rows : 0);
   for (std::size_t i = moment.first; i < std::min(all.size(), moment.first + wish.rows); ++i) {
     const core::RobotId id = all[i];
@@ -231,6 +239,10 @@ std::size_t rows_of(const WatchPage& page, Screen::Size size) {
   return layout_of(page, size).robots;
 }
 
+Screen::Size map_room(const WatchPage& page, Screen::Size size) {
+  return {size.columns, layout_of(page, size).map_room};
+}
+
 std::vector<ScreenLine> lay_out(const WatchPage& page, Screen::Size size) {
   const WatchMoment& m = page.moment;
   const Layout layout = layout_of(page, size);
@@ -241,6 +253,7 @@ std::vector<ScreenLine> lay_out(const WatchPage& page, Screen::Size size) {
   lines.insert(lines.end(), layout.roll.begin(), layout.roll.end());
   for (std::size_t i = 0; i < layout.real; ++i)
     lines.push_back({m.real[i].text, m.real[i].drives ? LineLook::Plain : LineLook::Bad});
+  for (std::size_t i = 0; i < layout.map; ++i) lines.push_back({m.map[i]});
   const std::size_t columns = id_width(m);
   std::string head = fmt::format("{} {} {:>8} {:>8} {:>6} {:>6} {:>7}  {}", column("robot", columns), column("kind", 8),
                                  "x m", "y m", "z m", "deg", "m/s", page.port.empty() ? "published" : page.port);

@@ -21,6 +21,7 @@ struct WatchWish {
   std::string port;                 ///< "proximity" or "actuator leds"; empty: what controllers publish
   std::size_t first = 0;            ///< of the chosen robots
   std::size_t rows = 20;            ///< robots, at most
+  Screen::Size map{0, 0};           ///< room for the map; none
 };
 
 /// What a moment is made of: of a run, or of the record of one.
@@ -49,6 +50,7 @@ struct WatchMoment {
   std::vector<std::string> ports;  ///< that the first of them has, as wishes name them
   std::vector<RealRobots::Line> real;
   std::vector<core::RollRow> roll;  ///< of the same robots
+  std::vector<std::string> map;     ///< of the arena; empty: there is no room
 };
 
 /// Finds what a wish asks for. Used by the thread that steps what is watched.
@@ -89,5 +91,7 @@ std::string summary(const WatchPage& page);
 std::vector<ScreenLine> lay_out(const WatchPage& page, Screen::Size size);
 /// Robots that a page of this size shows.
 std::size_t rows_of(const WatchPage& page, Screen::Size size);
+/// Room for the map on a page of this size.
+Screen::Size map_room(const WatchPage& page, Screen::Size size);
 
 }  // namespace tandem::app

@@ -205,7 +205,7 @@ void register_missing_commands(hal::Registrar& registrar) {
   static const std::vector<hal::CommandType> all = [] {
     std::vector<hal::CommandType> made;
     for (const Module& module : kModules) {
-      for (const ModuleCommand& command : module.commands) made.push_back({command.name, command.summary});
+      for (const ModuleCommand& command : module.commands) made.push_back(command_of(command));
     }
     return made;
   }();

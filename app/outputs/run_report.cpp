@@ -125,6 +125,7 @@ InputFiles input_files(const core::Scenario& scenario, const hal::PluginLoader& 
     if (file.ok()) files.controllers.push_back(described(config.id, config.label, file.value().string()));
   }
   for (const core::HookConfig& hook : scenario.hooks) {
+    if (hook.library == hal::Catalog::kInside) continue;
     const auto file = loader.find(hook.library);
     if (file.ok()) files.hooks.push_back(described("", hook.label, file.value().string()));
   }

@@ -184,9 +184,7 @@ int draw_film(const DrawOptions& options) {
 
 }  // namespace
 
-constinit const hal::CommandType picture_command =
-    hal::command_type<PictureOptions, draw_picture>("picture", module_summary("picture"));
-constinit const hal::CommandType film_command =
-    hal::command_type<FilmOptions, draw_film>("film", module_summary("film"));
+constinit const hal::CommandType picture_command = module_command<PictureOptions, draw_picture>("picture");
+constinit const hal::CommandType film_command = module_command<FilmOptions, draw_film>("film");
 
 }  // namespace tandem::app

@@ -19,6 +19,7 @@
 #include "core/view/film.hpp"
 #include "core/view/picture.hpp"
 #include "core/view/povray.hpp"
+#include "hal/rounded.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::app {
@@ -76,8 +77,8 @@ hal::Result<core::PictureLook> look_of(const PictureRequest& request, const core
   const core::PictureLook::Area region{request.region.at(0), request.region.at(1), request.region.at(2),
                                        request.region.at(3)};
   const auto text = [](const core::PictureLook::Area& a) {
-    return hal::format_number(a.min_x_m) + "," + hal::format_number(a.min_y_m) + "," + hal::format_number(a.max_x_m) +
-           "," + hal::format_number(a.max_y_m);
+    return hal::rounded(a.min_x_m) + "," + hal::rounded(a.min_y_m) + "," + hal::rounded(a.max_x_m) + "," +
+           hal::rounded(a.max_y_m);
   };
   if (!(region.min_x_m < region.max_x_m) || !(region.min_y_m < region.max_y_m))
     return hal::Error{"--picture-region " + text(region) +

@@ -185,6 +185,6 @@ int desk(const DeskOptions& options) {
 
 }  // namespace
 
-constinit const hal::CommandType desk_command = hal::command_type<DeskOptions, desk>("desk", module_summary("desk"));
+constinit const hal::CommandType desk_command = module_command<DeskOptions, desk>("desk");
 
 }  // namespace tandem::app

@@ -122,7 +122,6 @@ int emulate(const EmulateOptions& options) {
 
 }  // namespace
 
-constinit const hal::CommandType emulate_command =
-    hal::command_type<EmulateOptions, emulate>("emulate", module_summary("emulate"));
+constinit const hal::CommandType emulate_command = module_command<EmulateOptions, emulate>("emulate");
 
 }  // namespace tandem::app

@@ -71,7 +71,6 @@ int inspect(const InspectOptions& options) {
 
 }  // namespace
 
-constinit const hal::CommandType inspect_command =
-    hal::command_type<InspectOptions, inspect>("inspect", module_summary("inspect"));
+constinit const hal::CommandType inspect_command = module_command<InspectOptions, inspect>("inspect");
 
 }  // namespace tandem::app

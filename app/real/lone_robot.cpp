@@ -484,7 +484,6 @@ void RobotOptions::describe(hal::CommandLine& line) {
   describe_plugins(line, plugins);
 }
 
-constinit const hal::CommandType robot_command =
-    hal::command_type<RobotOptions, robot>("robot", module_summary("robot"));
+constinit const hal::CommandType robot_command = module_command<RobotOptions, robot>("robot");
 
 }  // namespace tandem::app

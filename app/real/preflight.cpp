@@ -14,6 +14,7 @@
 #include "app/experiment/reading.hpp"
 #include "app/module/module_table.hpp"
 #include "app/outputs/run_report.hpp"
+#include "app/process/progress.hpp"
 #include "app/process/signals.hpp"
 #include "app/process/terminal.hpp"
 #include "app/real/desk_keys.hpp"
@@ -130,6 +131,22 @@ PreflightRows look_over_peers(core::World& world, const hal::PluginLoader& loade
   return rows;
 }
 
+/// Robots stand for at most so long, and people see `what` is waited for.
+hal::Status stand_by(mixed_reality::MixedSession& session, const char* what, double most_s,
+                     const std::function<bool()>& enough, const std::atomic<bool>& stop) {
+  mixed_reality::MonotonicTime clock;
+  const hal::TimeNs began_ns = clock.now_ns();
+  const hal::TimeNs most_ns = static_cast<hal::TimeNs>(most_s * 1e9);
+  Progress progress(std::max<hal::TimeNs>(1, most_ns), hal::kNsPerSecond, what);
+  return session.stand_by(
+      [&] {
+        const hal::TimeNs waited_ns = clock.now_ns() - began_ns;
+        progress.step(waited_ns);
+        return enough() || waited_ns >= most_ns;
+      },
+      stop);
+}
+
 /// Waits for the robots as a run would, and then listens for a while.
 hal::Status listen(mixed_reality::MixedSession& session, const PreflightOptions& options,
                    const std::atomic<bool>& stop) {
@@ -138,17 +155,12 @@ hal::Status listen(mixed_reality::MixedSession& session, const PreflightOptions&
     if (item.bridge) wait_s = std::max(wait_s, item.bridge->connect_s);
   }
   wait_s = options.wait_s.value_or(wait_s);
-  mixed_reality::MonotonicTime clock;
-  const hal::TimeNs began_ns = clock.now_ns();
-  hal::TimeNs answered_ns = 0;
-  return session.stand_by(
-      [&] {
-        const hal::TimeNs now_ns = clock.now_ns();
-        if (answered_ns == 0 && (session.all_answer() || hal::to_seconds(now_ns - began_ns) >= wait_s))
-          answered_ns = now_ns;
-        return answered_ns != 0 && hal::to_seconds(now_ns - answered_ns) >= options.listen_s;
-      },
-      stop);
+  if (const hal::Status waited = stand_by(
+          session, "waiting for robots to answer", wait_s, [&] { return session.all_answer(); }, stop);
+      !waited.ok())
+    return waited;
+  return stand_by(
+      session, "listening to robots and trackers", options.listen_s, [] { return false; }, stop);
 }
 
 /// What a person on the terminal says to "turn it?": y, n, a (all), q (no more). Ctrl-C counts as q.
@@ -302,7 +314,6 @@ int preflight(const PreflightOptions& options) {
 
 }  // namespace
 
-constinit const hal::CommandType preflight_command =
-    hal::command_type<PreflightOptions, preflight>("preflight", module_summary("preflight"));
+constinit const hal::CommandType preflight_command = module_command<PreflightOptions, preflight>("preflight");
 
 }  // namespace tandem::app

@@ -44,7 +44,6 @@ int replay_line(const ReplayLine& line) {
 
 }  // namespace
 
-constinit const hal::CommandType replay_command =
-    hal::command_type<ReplayLine, replay_line>("replay", module_summary("replay"));
+constinit const hal::CommandType replay_command = module_command<ReplayLine, replay_line>("replay");
 
 }  // namespace tandem::app

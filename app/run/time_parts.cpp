@@ -36,8 +36,8 @@ class Pace final : public core::RunPart {
 
 class TerminalProgress final : public core::RunPart {
  public:
-  TerminalProgress(std::int64_t steps, std::int64_t ticks_per_second)
-      : progress_(std::in_place, steps, ticks_per_second) {}
+  TerminalProgress(std::int64_t steps, std::int64_t ticks_per_second, const std::string& name)
+      : progress_(std::in_place, steps, ticks_per_second, name) {}
   std::string_view name() const override { return "progress"; }
   core::RunTurn turn() const override { return core::RunTurn::Tell; }
   bool after_tick(core::Run& run) override {
@@ -60,8 +60,9 @@ std::unique_ptr<core::RunPart> pace_part(mixed_reality::Pacer& pacer, std::mutex
   return std::make_unique<Pace>(pacer, lock, std::move(lookout));
 }
 
-std::unique_ptr<core::RunPart> progress_part(std::int64_t steps, std::int64_t ticks_per_second) {
-  return std::make_unique<TerminalProgress>(steps, ticks_per_second);
+std::unique_ptr<core::RunPart> progress_part(std::int64_t steps, std::int64_t ticks_per_second,
+                                             const std::string& name) {
+  return std::make_unique<TerminalProgress>(steps, ticks_per_second, name);
 }
 
 }  // namespace tandem::app

@@ -192,6 +192,6 @@ int plot(const PlotOptions& given) {
 
 }  // namespace
 
-constinit const hal::CommandType plot_command = hal::command_type<PlotOptions, plot>("plot", module_summary("plot"));
+constinit const hal::CommandType plot_command = module_command<PlotOptions, plot>("plot");
 
 }  // namespace tandem::app

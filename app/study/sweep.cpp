@@ -15,7 +15,9 @@
 #include "app/experiment/plugins.hpp"
 #include "app/experiment/reading.hpp"
 #include "app/module/module_table.hpp"
+#include "app/outputs/report.hpp"
 #include "app/process/measure.hpp"
+#include "app/process/progress.hpp"
 #include "app/process/signals.hpp"
 #include "app/process/terminal.hpp"
 #include "app/study/cluster_sweep.hpp"
@@ -23,6 +25,7 @@
 #include "app/study/slurm.hpp"
 #include "app/study/sweep_plan.hpp"
 #include "core/record/pattern.hpp"
+#include "core/sim/incidents.hpp"
 #include "hal/unit.hpp"
 #include "study/batches/results.hpp"
 
@@ -71,20 +74,13 @@ struct SweepOptions {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t kManyRuns = 100'000;
-constexpr std::size_t kNamed = 10;  // failed runs that are printed
+constexpr std::size_t kNamed = 10;  // causes of failed runs that are printed
 
 std::size_t cores() {
   cpu_set_t set;
   CPU_ZERO(&set);
   if (sched_getaffinity(0, sizeof set, &set) != 0) return 1;
   return static_cast<std::size_t>(std::max(1, CPU_COUNT(&set)));
-}
-
-std::string duration_text(double seconds) {
-  if (seconds < 10.0) return fmt::format("{:.1f} s", seconds);
-  if (seconds < 100.0) return fmt::format("{:.0f} s", seconds);
-  if (seconds < 6000.0) return fmt::format("{:.0f} minutes", seconds / 60.0);
-  return fmt::format("{:.1f} hours", seconds / 3600.0);
 }
 
 /// "1 run", "5 runs"
@@ -136,41 +132,12 @@ bool meant(std::int64_t runs, bool yes) {
   return answer == 'y' || answer == 'Y';
 }
 
-/// How far a sweep is: a line that is drawn anew, on a terminal only.
-class SweepProgress {
- public:
-  SweepProgress(std::int64_t runs, std::int64_t before) : runs_(runs), before_(before), began_s_(wall_seconds()) {}
-  ~SweepProgress() {
-    if (shown_) fmt::print(stderr, "\r\033[K");
-  }
-  SweepProgress(const SweepProgress&) = delete;
-  SweepProgress& operator=(const SweepProgress&) = delete;
-
-  void show(std::int64_t made, std::int64_t failed) {
-    if (!terminal_) return;
-    shown_ = true;
-    const double took_s = wall_seconds() - began_s_;
-    const double rate = static_cast<double>(made) / std::max(took_s, 1e-9);
-    const std::int64_t left = runs_ - before_ - made;
-    constexpr int kWidth = 30;
-    const int filled = static_cast<int>(kWidth * (before_ + made) / std::max<std::int64_t>(1, runs_));
-    fmt::print(stderr, "\r\033[K[{:#<{}}{:-<{}}] {} of {} runs{}, {:.3g} a second", "", filled, "", kWidth - filled,
-               before_ + made, runs_, failed > 0 ? fmt::format(", {} failed", failed) : "", rate);
-    if (made > 0) fmt::print(stderr, ", {} left", duration_text(static_cast<double>(left) / rate));
-    std::fflush(stderr);
-  }
-
- private:
-  std::int64_t runs_, before_;
-  double began_s_;
-  bool terminal_ = isatty(STDERR_FILENO) != 0, shown_ = false;
-};
-
 /// The table of a sweep, with the runs that it lacks.
 struct Work {
   std::unique_ptr<study::Table> table;
   std::int64_t version = 0;
   std::int64_t failed_before = 0;  ///< that are not made again
+  bool begun = false;              ///< it was not there before
   std::vector<std::int64_t> runs;
 };
 
@@ -182,7 +149,7 @@ std::optional<Work> open_work(const SweepOptions& options, const study::Design& 
   };
   auto opened = study::Table::open(path);
   if (!opened.ok()) return refuse(opened.error().message);
-  Work work{std::move(opened).value(), 0, 0, {}};
+  Work work{std::move(opened).value(), 0, 0, false, {}};
   study::TableHead head{design.study().text, design.study().file, {}, design.runs()};
   for (const study::Parameter* p : design.study().parameters()) head.settings.push_back(p->name);
   std::vector<bool> there(static_cast<std::size_t>(design.runs()), false);
@@ -204,8 +171,9 @@ std::optional<Work> open_work(const SweepOptions& options, const study::Design& 
       if (!run.done && !options.retry_failed) ++work.failed_before;
     }
     if (const hal::Status renewed = work.table->renew(head); !renewed.ok()) return refuse(renewed.error().message);
-  } else if (const hal::Status begun = work.table->begin(head); !begun.ok()) {
-    return refuse(begun.error().message);
+  } else {
+    if (const hal::Status begun = work.table->begin(head); !begun.ok()) return refuse(begun.error().message);
+    work.begun = true;
   }
   auto number = work.table->add_version(version);
   if (!number.ok()) return refuse(number.error().message);
@@ -216,21 +184,42 @@ std::optional<Work> open_work(const SweepOptions& options, const study::Design& 
   return work;
 }
 
+/// Runs that failed for one cause.
+struct FailedRuns {
+  std::string cause;  ///< as core::cause_of gives it
+  study::RunPlan first;
+  std::string why;  ///< of the first
+  std::size_t others = 0;
+};
+
 /// What came of a sweep.
 struct Tally {
   std::int64_t made = 0, failed = 0, failed_before = 0;
   double cpu_s = 0.0;
-  std::vector<std::pair<study::RunPlan, std::string>> first_failed;
+  std::vector<FailedRuns> causes;  ///< the first few
+  bool more_causes = false;
+
+  void note_failed(const study::FinishedRun& run) {
+    ++failed;
+    std::string cause = core::cause_of(run.outcome.failure);
+    const auto known = std::ranges::find(causes, cause, &FailedRuns::cause);
+    if (known != causes.end())
+      ++known->others;
+    else if (causes.size() < kNamed)
+      causes.push_back({std::move(cause), run.plan, run.outcome.failure});
+    else
+      more_causes = true;
+  }
 };
 
 void tell(const Tally& tally, const study::Design& design, const SweepOptions& options, double took_s) {
   fmt::print("{} made in {}: {} done, {} failed; {} of processor time for them\n", counted(tally.made, "run"),
              duration_text(took_s), tally.made - tally.failed, tally.failed, duration_text(tally.cpu_s));
-  for (const auto& [plan, why] : tally.first_failed) {
-    fmt::print("run {} failed: {}\n  {}\n", plan.number, printable(why), command_of(design, plan));
+  for (const FailedRuns& runs : tally.causes) {
+    fmt::print("{}: {}\n  {}\n", core::with_others(fmt::format("run {}", runs.first.number), runs.others, " failed"),
+               printable(runs.why), command_of(design, runs.first));
   }
-  if (tally.failed > static_cast<std::int64_t>(tally.first_failed.size()))
-    fmt::print("… and more; the table's column 'failure' has all\n");
+  if (tally.more_causes) fmt::print("… and for more reasons; the table's column 'failure' has all\n");
   if (tally.failed_before > 0) fmt::print("{} failed before; ", counted(tally.failed_before, "run"));
   if (tally.failed + tally.failed_before > 0) fmt::print("again: {} --retry-failed\n", resume_command(options));
 }
@@ -266,6 +255,14 @@ std::optional<study::Study> read_study_or_complain(const std::string& path) {
   auto study = study::read_study(path, problems);
   print_problems(problems);
   return study;
+}
+
+/// Files of CSV that another table was written to are kept.
+hal::Status keep_csv(const std::string& table) {
+  for (const char* ending : {".csv", ".samples.csv"}) {
+    if (hal::Status kept = keep_old(fs::path(table).replace_extension(ending).string()); !kept.ok()) return kept;
+  }
+  return {};
 }
 
 /// The table is whole: as CSV, and what to tell of it. `left`: runs that are missing. @returns the program's code.
@@ -328,7 +325,9 @@ int sweep(const SweepOptions& options) {
   hal::Status status;
   {
     const auto missing = static_cast<std::int64_t>(work->runs.size());
-    SweepProgress progress(design.runs(), design.runs() - missing);
+    const std::int64_t before = design.runs() - missing;
+    Progress progress(design.runs(), 1, "sweep", "runs");
+    progress.step(before);
     std::vector<study::RunRow> rows;
     MeasureWatch watch(*study);
     const auto take = [&](std::span<const study::FinishedRun> finished) {
@@ -342,12 +341,13 @@ int sweep(const SweepOptions& options) {
         ++tally.made;
         tally.cpu_s += run.outcome.cpu_s;
         if (run.outcome.done) continue;
-        ++tally.failed;
-        if (tally.first_failed.size() < kNamed) tally.first_failed.emplace_back(run.plan, run.outcome.failure);
+        tally.note_failed(run);
       }
       return work->table->add(rows);
     };
-    const auto tick = [&] { progress.show(tally.made, tally.failed); };
+    const auto tick = [&] {
+      progress.step(before + tally.made, tally.failed > 0 ? fmt::format(", {} failed", tally.failed) : "");
+    };
     if (options.slurm) {
       status = sweep_on_cluster(design, work->runs, version, cluster_options(options, batches), take, tick, say, stop);
     } else {
@@ -361,6 +361,7 @@ int sweep(const SweepOptions& options) {
   }
   const double took_s = wall_seconds() - began_s;
   if (status.ok()) status = work->table->finish();
+  if (status.ok() && work->begun) status = keep_csv(path);
   const auto left = static_cast<std::int64_t>(work->runs.size()) - tally.made;
   if (left == 0) fs::remove_all(checkpoints, none);
   const std::string go_on = again + (options.slurm ? " --slurm" : "");
@@ -438,8 +439,7 @@ int check_study(const std::string& path, const Libraries& plugins) {
 
 }  // namespace
 
-constinit const hal::CommandType sweep_command =
-    hal::command_type<SweepOptions, sweep_or_batch>("sweep", module_summary("sweep"));
+constinit const hal::CommandType sweep_command = module_command<SweepOptions, sweep_or_batch>("sweep");
 
 constinit const CheckedFile study_file = {"study", &check_study};
 

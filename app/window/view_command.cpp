@@ -32,6 +32,6 @@ int view(RunOptions options) {
 
 }  // namespace
 
-constinit const hal::CommandType view_command = hal::command_type<ViewLine, view>("view", module_summary("view"));
+constinit const hal::CommandType view_command = module_command<ViewLine, view>("view");
 
 }  // namespace tandem::app

@@ -15,6 +15,7 @@
 #include "bridges/tag_tracker/locate.hpp"
 #include "hal/element.hpp"
 #include "hal/monotonic.hpp"
+#include "hal/rounded.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::bridges::tag_tracker {
@@ -258,8 +259,8 @@ hal::Status check_tag_tracker(const TrackerRequest& request) {
   if (const auto made = detector_of(options); !made.ok()) return made.error();
   for (const TrackedThing& thing : request.things) {
     if (thing.height_m >= camera.value().place.p_WC.z())
-      return hal::Error{"the tag '" + thing.name + "' is " + hal::format_number(thing.height_m) +
-                        " m above the floor, and the camera only " + hal::format_number(camera.value().place.p_WC.z())};
+      return hal::Error{"the tag '" + thing.name + "' is " + hal::rounded(thing.height_m) +
+                        " m above the floor, and the camera only " + hal::rounded(camera.value().place.p_WC.z())};
   }
   return {};
 }

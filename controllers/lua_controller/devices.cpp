@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "controllers/lua_controller/rings.hpp"
+#include "hal/device/argos_readings.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/cameras.hpp"
 #include "hal/device/distance_scanner.hpp"
@@ -21,7 +22,6 @@
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/turret.hpp"
 #include "hal/device/wheels.hpp"
-#include "hal/elementary.hpp"
 
 namespace tandem::controllers::lua {
 namespace {
@@ -29,7 +29,7 @@ namespace {
 using hal::QuadrotorPosition, hal::QuadrotorSpeed, hal::ScannerDrive, hal::TurretDrive, hal::PanTiltDrive;
 using hal::WheelSpeeds, hal::RangeAndBearingSend, hal::GripperDrive;
 
-constexpr double kM_per_cm = 0.01;
+using hal::argos::kM_per_cm;
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 /// The port that a function acts on: its first upvalue is the device's number.
@@ -400,27 +400,20 @@ const hal::Positioning* positioning_of(lua_State* L) {
   return nullptr;
 }
 
-double yaw_of(const hal::Positioning& at) noexcept {
-  const auto& [w, x, y, z] = at.q_WB;
-  return hal::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z));
-}
-
 constexpr std::array kFlightTo = {
     takes<QuadrotorPosition>("set_absolute_position", "robot.quadrotor.set_absolute_position(x, y, z)", 3,
                              [](auto& d, auto* x) { d.set(x[0], x[1], x[2], d.yaw_rad); }),
     takes<QuadrotorPosition>("set_relative_position", "robot.quadrotor.set_relative_position(x, y, z)", 3,
                              [](auto& d, auto* x, lua_State* L) {
-                               const hal::Positioning& at = *positioning_of(L);
-                               const double yaw = yaw_of(at), c = hal::cos(yaw), s = hal::sin(yaw);
-                               d.set(at.p_WB[0] + x[0] * c - x[1] * s, at.p_WB[1] + x[0] * s + x[1] * c,
-                                     at.p_WB[2] + x[2], d.yaw_rad);
+                               const auto p_WT = hal::argos::from_body(*positioning_of(L), {x[0], x[1], x[2]});
+                               d.set(p_WT[0], p_WT[1], p_WT[2], d.yaw_rad);
                              }),
     takes<QuadrotorPosition>("set_absolute_yaw", "robot.quadrotor.set_absolute_yaw(degrees)", 1,
                              [](auto& d, auto* x) { d.yaw_rad = x[0] * std::numbers::pi / 180.0; }),
     takes<QuadrotorPosition>("set_relative_yaw", "robot.quadrotor.set_relative_yaw(degrees)", 1,
                              [](auto& d, auto* x, lua_State* L) {
                                const double turn = x[0] * std::numbers::pi / 180.0;
-                               d.yaw_rad = yaw_of(*positioning_of(L)) + turn;
+                               d.yaw_rad = hal::argos::yaw_of(*positioning_of(L)) + turn;
                              })};
 
 constexpr std::array kFlightWith = {

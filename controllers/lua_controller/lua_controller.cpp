@@ -134,10 +134,15 @@ void LuaController::start_outputs() {
 LuaController::LuaController(hal::Robot& robot, const Params& params)
     : interpreters_(params.interpreters), shared_(std::make_shared<Shared>()) {
   const auto script = interpreters_->present(params);
-  shared_->interpreter = interpreters_->place(this, script, robot.kind(), list_of(robot).devices());
-  take(robot);
-  const std::lock_guard hold(shared_->interpreter->lock());
-  shared_->variables = shared_->interpreter->begin(actor_);
+  try {
+    shared_->interpreter = interpreters_->place(this, script, robot.kind(), list_of(robot).devices());
+    take(robot);
+    const std::lock_guard hold(shared_->interpreter->lock());
+    shared_->variables = shared_->interpreter->begin(actor_);
+  } catch (const std::exception& e) {
+    if (length_of_place(e.what()) == 0) throw;  // it goes on from the robot's name
+    throw std::runtime_error(std::string("cannot run its script: ") + e.what());
+  }
   shared_->active = this;
 }
 

@@ -1,10 +1,10 @@
 // Numbers of scripts: elementary functions with the same bits everywhere, and random numbers from the robot's own.
-#include <algorithm>
 #include <cmath>
 #include <cstring>
 
 #include "controllers/lua_controller/devices.hpp"
 #include "hal/elementary.hpp"
+#include "hal/poisson.hpp"
 
 namespace tandem::controllers::lua {
 namespace {
@@ -152,20 +152,12 @@ int exponential(lua_State* L) {
   return 1;
 }
 
-/// [Knuth, The Art of Computer Programming 2, 3.4.1], by parts that exp(-mean) can tell from 0.
 int poisson(lua_State* L) {
   expect_arguments(L, 1, "robot.random.poisson(mean)");
-  double mean = luaL_checknumber(L, 1);
+  const double mean = luaL_checknumber(L, 1);
   luaL_argcheck(L, mean >= 0.0 && mean <= 1e6, 1, "a mean is from 0 to 1e6");
   Interpreter::of(L).spend(L, static_cast<std::int64_t>(mean));
-  lua_Integer events = 0;
-  while (mean > 0.0) {
-    const double part = std::min(mean, 30.0);
-    mean -= part;
-    const double least = hal::exp(-part);
-    for (double product = random_of(L).uniform(); product > least; product *= random_of(L).uniform()) ++events;
-  }
-  lua_pushinteger(L, events);
+  lua_pushinteger(L, hal::poisson(random_of(L), mean));
   return 1;
 }
 

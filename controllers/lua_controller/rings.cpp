@@ -1,41 +1,24 @@
 // Rings of sensors as ARGoS' scripts know them: a list of readings, counter-clockwise from forward.
 #include "controllers/lua_controller/rings.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "controllers/lua_controller/devices.hpp"
 #include "controllers/lua_controller/own_tables.hpp"
+#include "hal/device/argos_readings.hpp"
 #include "hal/device/ring_sensors.hpp"
-#include "hal/elementary.hpp"
 
 namespace tandem::controllers::lua {
 namespace {
-
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
-
-/// Numbers of the sensors in ARGoS' order: counter-clockwise from forward.
-std::vector<std::size_t> counter_clockwise(std::span<const hal::Mount> mounts) {
-  std::vector<std::size_t> order(mounts.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  const auto turn = [&](std::size_t i) {
-    const double rad = std::fmod(mounts[i].bearing_rad, kTwoPi);
-    return rad < 0.0 ? rad + kTwoPi : rad;
-  };
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return turn(a) < turn(b); });
-  return order;
-}
 
 /// The table becomes a ring of sensors, or a list of numbers where `member` is null. What the script changed in it is
 /// put right with each filling, by a function in Lua: that is the fastest.
 void open_ring(lua_State* L, Interpreter& in, std::size_t device, std::span<const hal::Mount> mounts, bool bare) {
   const int table = lua_gettop(L);
   Device& d = in.device(device);
-  d.order = counter_clockwise(mounts);
+  d.order = hal::argos::counter_clockwise(mounts);
   if (d.order.empty()) return;
   bool compiled = false;
   {
@@ -70,8 +53,7 @@ void open_ring(lua_State* L, Interpreter& in, std::size_t device, std::span<cons
     }
     lua_call(L, count, 1);
     for (int i = 0; i < count; ++i) {
-      const double turn = std::fmod(mounts[d.order[static_cast<std::size_t>(i)]].bearing_rad, kTwoPi);
-      lua_pushnumber(L, turn > std::numbers::pi ? turn - kTwoPi : turn <= -std::numbers::pi ? turn + kTwoPi : turn);
+      lua_pushnumber(L, hal::argos::signed_angle(mounts[d.order[static_cast<std::size_t>(i)]].bearing_rad));
     }
     lua_call(L, count, 1);
   }
@@ -88,11 +70,6 @@ void fill_ring(lua_State* L, Interpreter& in, std::size_t device, Value&& value)
   lua_rawgeti(L, LUA_REGISTRYINDEX, d.filler);
   for (const std::size_t i : d.order) lua_pushnumber(L, value(i));
   lua_call(L, count, 0);
-}
-
-/// ARGoS' response of the rings of foot-bot, eye-bot and e-puck: 1 at contact, 0 beyond the range.
-double response(double distance_m) noexcept {
-  return distance_m < 0.009889556 ? 1.0 : 0.0100527 / (distance_m + 0.000163144);
 }
 
 void open_ring_of_part(lua_State* L, Interpreter& in, std::size_t device, std::span<const hal::Mount> mounts) {
@@ -112,11 +89,11 @@ void open_light(lua_State* L, Interpreter& in, std::size_t device) {
 
 void fill_proximity(lua_State* L, Interpreter& in, std::size_t device, const void* port) {
   const auto& p = *static_cast<const hal::Proximity*>(port);
-  const bool bare = in.device(device).written == "proximity";
+  const hal::argos::Curve curve =
+      in.device(device).written == "proximity" ? &hal::argos::plain_curve : &hal::argos::ring_curve;
   fill_ring(L, in, device, [&](std::size_t i) {
     if (i >= p.count || p.distance_m[i] >= p.range_m) return 0.0;
-    const auto distance_m = static_cast<double>(p.distance_m[i]);
-    return bare ? hal::exp(-distance_m) : response(distance_m);
+    return curve(static_cast<double>(p.distance_m[i]));
   });
 }
 

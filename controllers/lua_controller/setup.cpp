@@ -43,12 +43,32 @@ bool mentions(std::string_view text, std::string_view word) noexcept {
   return false;
 }
 
+/// "walk.lua:12: unexpected symbol" on the top says what it is: "walk.lua:12: syntax error: unexpected symbol".
+void name_syntax_error(lua_State* L) noexcept {
+  const char* const text = lua_tostring(L, -1);
+  const std::size_t place = length_of_place(text);
+  if (place == 0) return;
+  lua_pushlstring(L, text, place);
+  lua_pushliteral(L, "syntax error: ");
+  lua_pushstring(L, text + place);
+  lua_concat(L, 3);
+  lua_replace(L, -2);
+}
+
 int metatable_of(lua_State* L) {
   if (lua_getmetatable(L, 1) == 0) lua_pushnil(L);
   return 1;
 }
 
 }  // namespace
+
+std::size_t length_of_place(std::string_view text) noexcept {
+  for (std::size_t at = text.find(':'); at != std::string_view::npos; at = text.find(':', at + 1)) {
+    const std::size_t end = std::min(text.find_first_not_of("0123456789", at + 1), text.size());
+    if (end > at + 1 && text.substr(end).starts_with(": ")) return end + 2;
+  }
+  return 0;
+}
 
 Interpreter::Interpreter(std::shared_ptr<const Script> script, const hal::RobotKind& kind,
                          const std::vector<hal::ListedDevice>& devices)
@@ -96,7 +116,9 @@ int Interpreter::protected_setup(lua_State* L) {
 
 bool Interpreter::compile(lua_State* L, std::string_view text, const char* name) noexcept {
   Source source{without_marks(text)};
-  return lua_load(L, &Source::read, &source, name, "t") == LUA_OK;
+  const int status = lua_load(L, &Source::read, &source, name, "t");
+  if (status == LUA_ERRSYNTAX) name_syntax_error(L);
+  return status == LUA_OK;
 }
 
 bool Interpreter::compile_for_all(lua_State* L, std::string_view text, const char* name, const char* file) noexcept {

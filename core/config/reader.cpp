@@ -293,8 +293,18 @@ void read_visualization(Reading& reading, Element& visualization) {
   for (const Element& e : visualization.children) {
     const Element* camera = e.child("camera");
     if (camera != nullptr) reading.out().camera = *camera;
+    const Element* drawing = e.child("user_functions");
+    const std::string *library = nullptr, *label = nullptr;
+    if (drawing != nullptr && e.name == "qt-opengl") {
+      library = drawing->attribute("library");
+      label = drawing->attribute("label");
+    }
+    if (label != nullptr)
+      reading.out().hooks.push_back(
+          {library == nullptr ? std::string() : *library, "qt-opengl " + *label, *drawing, drawing->line, true});
     reading.warn(e, "<" + e.name + "> is left out: there is no such view here" +
-                        (camera != nullptr ? "; its camera placements are kept" : ""));
+                        (camera != nullptr ? "; its camera placements are kept" : "") +
+                        (label != nullptr ? "; its user functions draw into the window and into pictures" : ""));
   }
 }
 

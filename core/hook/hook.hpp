@@ -61,6 +61,9 @@ class Hook {
 
   virtual void before_run(HookContext&) {}
   virtual void before_step(HookContext&) {}
+  /// Bodies have moved, and sensors and controllers have their turn next: they see what is changed here. Robots that
+  /// are added here sense and step in this tick.
+  virtual void before_sense(HookContext&) {}
   virtual void after_step(HookContext&) {}
   /// Asked after every step; true ends the run.
   virtual bool is_done(HookContext&) { return false; }
@@ -108,7 +111,7 @@ inline void Hook::restore(const std::any& saved) {
 /// A class of hooks: what a plug-in registers.
 struct HookType {
   static constexpr std::string_view kCategory = "hook";
-  static constexpr std::uint32_t kNumber = 5;
+  static constexpr std::uint32_t kNumber = 6;
   using Crosses =
       hal::Layouts<Hook, HookContext, Space, Checkpoints, Sketch, Sketch::Shape, Sketch::Point, Measures, Element,
                    Problem, hal::ParamVisitor, hal::Controls, hal::RobotKind, hal::RobotKind::Crosses>;
@@ -116,8 +119,9 @@ struct HookType {
   std::string_view summary;
   /// Reads its options from the file; problems are reported with their lines.
   std::unique_ptr<Hook> (*make)(const Element& options, Problems& problems) = nullptr;
-  /// Shows its parameters to `visitor`, for the manual.
+  /// Shows its parameters to `visitor`, for the manual. Null: it reads its element by itself.
   void (*describe)(hal::ParamVisitor& visitor) = nullptr;
+  bool implied = false;  ///< of the program itself: every world has one, after those of the file
 };
 
 /// The table of hook class `T`, constructed from `(const T::Params&)`.

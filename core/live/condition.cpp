@@ -6,6 +6,7 @@
 
 #include "hal/element.hpp"
 #include "hal/json/json_access.hpp"
+#include "hal/rounded.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::core {
@@ -91,7 +92,7 @@ std::string Conditions::who(const Condition& c, const World& world) {
   const Space& space = world.space();
   const SpaceStores& s = space.stores();
   const auto told = [&](const std::string& id, double value) {
-    return "robot '" + id + "': " + c.words + " (it is " + hal::format_number(value) + ")";
+    return "robot '" + id + "': " + c.words + " (it is " + hal::rounded(value, 6) + ")";
   };
   if (c.robot != "*") {
     const auto value = value_of(c.field, space, space.find_robot(c.robot));
@@ -131,7 +132,8 @@ std::string Conditions::check(const World& world) {
     if (c.incident) {
       const std::uint64_t incidents = incidents_of(world);
       if (incidents > incidents_)
-        now = world.incidents().first.empty() ? "an incident" : "incident: " + world.incidents().first.back();
+        now = world.incidents().first.empty() ? "an incident"
+                                              : "incident: " + world.incidents().first.at(world.incidents().latest);
       incidents_ = incidents;
       c.held = false;
     } else {

@@ -162,7 +162,7 @@ hal::Status change(World& world, const std::string& owner, std::string_view name
     if (owner_of_hook(world, i) != owner) continue;
     Setting setting(name, value);
     const hal::Status called = world.visit_controls(i, setting);
-    return called.ok() ? setting.done(owner) : called;
+    return called.ok() ? setting.done(owner) : hal::Status(hal::Error{owner + ": " + called.error().message});
   }
   std::vector<RobotId> robots;
   if (owner.starts_with("robot:")) {
@@ -186,7 +186,7 @@ hal::Status change(World& world, const std::string& owner, std::string_view name
   for (const RobotId robot : robots) {
     Setting setting(name, value);
     const hal::Status called = world.visit_controls(robot, setting);
-    if (!called.ok()) return called;
+    if (!called.ok()) return hal::Error{owner + ": " + called.error().message};
     if (const hal::Status done = setting.done(owner); !done.ok()) return done;  // by the first: all are of one class
   }
   return {};

@@ -7,6 +7,7 @@
 #include "core/placement/occupancy.hpp"
 #include "core/random/random.hpp"
 #include "hal/angle.hpp"
+#include "hal/rounded.hpp"
 #include "hal/vector.hpp"
 
 namespace tandem::core {
@@ -137,9 +138,7 @@ class Placer {
            std::fabs(p[1] - scenario_.arena_center[1]) <= 0.5 * scenario_.arena_size[1];
   }
 
-  static std::string text_of(const Vec3& p) {
-    return "(" + hal::format_number(p[0]) + ", " + hal::format_number(p[1]) + ")";
-  }
+  static std::string text_of(const Vec3& p) { return hal::place_text(p[0], p[1]); }
 
   std::string name_of(const Obstacle& o) const {
     const std::string& id = o.is_robot ? scenario_.robots[o.item].id : scenario_.objects[o.item].id;
@@ -201,7 +200,7 @@ class Placer {
     if (!inside(p)) {
       problem(item.line, "robot '" + item.id + "' is at " + text_of(p) + ", outside the arena");
     } else if (p[2] < 0.0) {
-      problem(item.line, "robot '" + item.id + "' is at a height of " + hal::format_number(p[2]) +
+      problem(item.line, "robot '" + item.id + "' is at a height of " + hal::rounded(p[2]) +
                              " m, below the ground; <body position> is where its base stands");
     } else if (const Obstacle* other = occupancy_.hit(o); other != nullptr) {
       problem(item.line, "robot '" + item.id + "' overlaps " + name_of(*other) + "; move one of them");

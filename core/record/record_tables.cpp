@@ -68,6 +68,7 @@ hal::Result<Tables> tables_of(const TableChoice& choice, RecordReader& reader) {
     if (std::find(all.begin(), all.end(), text) == all.end()) all.push_back(text);
   };
   while (const auto entry = reader.next()) {
+    choice.looked_at(reader, entry->tick);
     if (!entry->rows) continue;
     const RecordRows& rows = *entry->rows;
     const std::string title = rows.stream().title();
@@ -180,6 +181,10 @@ hal::Status write_events(TableSink& file, const std::vector<RecordEvent>& events
 
 }  // namespace
 
+void TableChoice::looked_at(const RecordReader& reader, std::int64_t tick) const {
+  if (at_tick) at_tick(tick, reader.ticks().empty() ? 0 : reader.ticks().back());
+}
+
 bool TableChoice::wants(std::int64_t tick) const {
   return tick >= from.value_or(0) && tick <= until.value_or(tick) && (tick - from.value_or(0)) % every == 0;
 }
@@ -227,6 +232,7 @@ hal::Status RecordTables::write(TableSink& sink) {
       return told;
   }
   while (const auto entry = reader.next()) {
+    impl_->choice.looked_at(reader, entry->tick);
     if (!wanted(impl_->choice, *entry)) continue;
     Table& table = tables.at(entry->rows->stream().title());
     const bool next = table.ticks.empty() || table.ticks.back() != static_cast<double>(entry->tick);

@@ -1,6 +1,7 @@
 // The tables of a record, for export.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,6 +12,8 @@
 
 namespace tandem::core {
 
+class RecordReader;
+
 /// What of a record is wanted.
 struct TableChoice {
   std::string record;
@@ -19,9 +22,13 @@ struct TableChoice {
   std::vector<std::string> entities;        ///< ids, or patterns with '*'; empty: all
   std::optional<std::int64_t> from, until;  ///< ticks, both included
   std::int64_t every = 1;                   ///< of the ticks that are there
+  /// Called with each tick that is looked at, and the last that has poses. May be empty.
+  std::function<void(std::int64_t tick, std::int64_t last)> at_tick;
 
   bool wants(std::int64_t tick) const;
   bool wants(const std::string& id) const;
+  /// Calls `at_tick`, if there is one.
+  void looked_at(const RecordReader& reader, std::int64_t tick) const;
 };
 
 /// A group each: "pose" is /pose, "sensor proximity" is /sensor/proximity. In it `tick`, `time` (s, of the tick's end),

@@ -288,6 +288,7 @@ struct HookConfig {
   std::string label;
   Element options;  ///< the whole element with its children
   int line = 0;
+  bool optional = false;  ///< user functions of a view: without their library the run goes on, with a warning
 };
 
 struct TrajectoryConfig {

@@ -7,6 +7,7 @@
 
 #include "core/physics/engine.hpp"
 #include "core/scenario/split.hpp"
+#include "hal/rounded.hpp"
 
 namespace tandem::core {
 namespace {
@@ -211,9 +212,9 @@ class Maker {
         const auto where = overlap(one, other);
         if (!where) continue;
         problem(one.line, "the region of engine '" + one.name + "' overlaps that of engine '" + other.name +
-                              "' (line " + std::to_string(other.line) + "), as at (" +
-                              hal::format_number(where->first) + ", " + hal::format_number(where->second) +
-                              "); every place belongs to one engine: give each its <boundaries>");
+                              "' (line " + std::to_string(other.line) + "), as at " +
+                              hal::place_text(where->first, where->second) +
+                              "; every place belongs to one engine: give each its <boundaries>");
         return;
       }
     }

@@ -164,6 +164,19 @@ void put_seed(Scenario& scenario, std::uint64_t seed) {
 
 }  // namespace
 
+void add_implied_hooks(Scenario& scenario, const hal::Catalog& catalog) {
+  for (const HookType* type : catalog.all<HookType>()) {
+    const auto same = [&](const HookConfig& hook) {
+      return hook.library == hal::Catalog::kInside && hook.label == type->name;
+    };
+    if (!type->implied || std::any_of(scenario.hooks.begin(), scenario.hooks.end(), same)) continue;
+    HookConfig& config = scenario.hooks.emplace_back();
+    config.library = hal::Catalog::kInside;
+    config.label = config.options.name = type->name;
+    config.options.file = scenario.file;
+  }
+}
+
 void complete_settings(Scenario& scenario, hal::PluginLoader& loader, std::uint64_t seed) {
   complete_controllers(scenario, loader);
   put_params_of_robots(scenario);

@@ -15,6 +15,9 @@ namespace tandem::core {
 /// uses is left as it is. Call once all parts have been made: libraries are open, and nothing is unknown.
 void complete_settings(Scenario& scenario, hal::PluginLoader& loader, std::uint64_t seed);
 
+/// Adds the hooks that every world has (HookType::implied), where they are not there.
+void add_implied_hooks(Scenario& scenario, const hal::Catalog& catalog);
+
 /// Whether two elements say the same: attributes in any order, numbers by value ("0.1" and "0.10").
 bool same_settings(const Element& a, const Element& b);
 

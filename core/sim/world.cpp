@@ -7,6 +7,7 @@
 #include "core/sim/world_impl.hpp"
 #include "core/space/fingerprint.hpp"
 #include "hal/check.hpp"
+#include "hal/rounded.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::core {
@@ -22,6 +23,7 @@ bool World::step() {
   if (w.external != nullptr) w.external->latch(*this);
   w.act();
   w.physics();
+  w.before_sense();
   w.in_controllers = true;
   if (w.external == nullptr) {
     w.sense_and_control();
@@ -69,6 +71,20 @@ void World::Impl::each_block(MeasuredPhase& phase, Work&& work) {
   phase.run(*pool, stores().blocks.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t block = begin; block < end; ++block) work(block);
   });
+}
+
+/// The hooks' turn between physics and sensing; what sensors look into follows their changes.
+void World::Impl::before_sense() {
+  SpaceStores& s = stores();
+  const bool changed_before = std::exchange(s.bodies_changed, false);
+  call_hooks("before_sense", [](Hook& hook, HookContext& c) { hook.before_sense(c); });
+  paint_fields();
+  const bool changed = std::exchange(s.bodies_changed, s.bodies_changed || changed_before);
+  if (!changed && indexed_version == s.immovables_version) return;
+  settle_changes();
+  rebuild_index();
+  index_movables();
+  media.index(s);
 }
 
 void World::Impl::sense_and_control() {
@@ -120,7 +136,7 @@ const std::uint8_t* World::Impl::not_stepped(std::size_t index,
 
 /// Reported, and its actuators made safe, after the phase.
 void World::Impl::note_thrown(std::size_t index, std::size_t slot, std::string what) {
-  faults[index].message = hal::shortened(what, hal::kLongestMessage / 2);  // more is said of it
+  faults[index].emplace_back(slot, hal::shortened(what, hal::kLongestMessage / 2));  // more is said of it
   stores().blocks[index].halted[slot] = kThrewInThisTick;
   block_trouble[index] = 1;
 }
@@ -166,25 +182,41 @@ void World::Impl::note_excess(std::size_t index, std::size_t slot, const hal::Li
   block_trouble[index] = 1;
 }
 
-namespace {
-
-/// Metres, rounded to millimetres: for people.
-std::string in_mm(double metres) {
-  return hal::format_number(std::round(metres * 1e3) / 1e3);
-}
-
-}  // namespace
-
 void World::Impl::report_excess(std::size_t index) {
   const Excess found = std::exchange(excess[index], {});
   const RobotBlock& block = stores().blocks[index];
   if (found.most_m_s == 0.0 || std::exchange(excess_named[block.group], std::uint8_t{1}) != 0) return;
-  incident("controller of robot '" + name_of_row(block.first_row + found.slot) + "' commanded " +
-           in_mm(found.asked_m_s) + " m/s" + at_tick() + ", where " + in_mm(found.most_m_s) +
-           " m/s is the most that it can do" +
-           (found.asked_m_s > kUnlikely * found.most_m_s
-                ? "; did you mean cm/s? Speeds are in m/s"
-                : ": that is what it drives; a parameter without a unit has that of its class (`tandem describe`)"));
+  const std::uint32_t entity = stores().bodies.entity[block.first_row + found.slot];
+  incidents.note(number_of(entity), controller_of(entity),
+                 " commanded " + hal::rounded(found.asked_m_s) + " m/s" + at_tick() + ", where " +
+                     hal::rounded(found.most_m_s) + " m/s is the most that it can do" +
+                     (found.asked_m_s > kUnlikely * found.most_m_s ? "; did you mean cm/s? Speeds are in m/s"
+                                                                   : ": that is what it drives; a parameter without a "
+                                                                     "unit has that of its class (`tandem describe`)"));
+}
+
+/// A command of this robot that is no finite number.
+void World::Impl::report_not_finite(std::uint32_t entity, const RobotGroup& group) {
+  const hal::RobotKind& kind = *group.kind;
+  const bool more = std::any_of(group.ports.begin(), group.ports.end(), [](const hal::PortType* port) {
+    return port->limit != nullptr && port->slow_down == nullptr;  // than what moves it
+  });
+  incidents.note(number_of(entity), controller_of(entity),
+                 std::string(" commanded ") +
+                     (kind.flies() ? "a flight"
+                      : more       ? "something"
+                                   : "a wheel speed") +
+                     " that is not a finite number" + at_tick() +
+                     (kind.flies() ? ": it hovers for this tick"
+                      : more       ? ": that device is off for this tick"
+                                   : ": wheels stopped for this tick"));
+}
+
+void World::Impl::report_thrown(std::uint32_t entity, const std::string& why) {
+  space.set_halted({entity, stores().robots[entity].generation}, true, HaltOwner::Controller);
+  ++incidents.controllers_thrown;
+  incidents.note(number_of(entity), controller_of(entity),
+                 " threw" + at_tick() + ": " + why + "; the robot is stopped");
 }
 
 void World::Impl::report_trouble() {
@@ -195,41 +227,28 @@ void World::Impl::report_trouble() {
     RobotBlock& block = stores().blocks[index];
     for (std::size_t i = 0; i < block.used; ++i) {
       const std::size_t row = block.first_row + i;
+      const std::uint32_t entity = stores().bodies.entity[row];
       std::uint8_t& flags = stores().bodies.flags[row];
       if ((flags & kNotFinite) != 0) {
         flags = static_cast<std::uint8_t>(flags & ~kNotFinite);
-        if (incidents.first.size() < kIncidentsNamed) {
-          const RobotGroup& group = stores().groups[block.group];
-          const hal::RobotKind& kind = *group.kind;
-          const bool more = std::any_of(group.ports.begin(), group.ports.end(), [](const hal::PortType* port) {
-            return port->limit != nullptr && port->slow_down == nullptr;  // than what moves it
-          });
-          incident("controller of robot '" + name_of_row(row) + "' commanded " +
-                   (kind.flies() ? "a flight"
-                    : more       ? "something"
-                                 : "a wheel speed") +
-                   " that is not a finite number" + at_tick() +
-                   (kind.flies() ? ": it hovers for this tick"
-                    : more       ? ": that device is off for this tick"
-                                 : ": wheels stopped for this tick"));
-        }
+        report_not_finite(entity, stores().groups[block.group]);
       }
-      if ((block.halted[i] & kThrewInThisTick) != 0) {
-        block.halted[i] = static_cast<std::uint8_t>(block.halted[i] & ~kThrewInThisTick);
-        const std::uint32_t entity = stores().bodies.entity[row];
-        const RobotId id{entity, stores().robots[entity].generation};
-        space.set_halted(id, true, HaltOwner::Controller);
-        ++incidents.controllers_thrown;
-        incident("controller of robot '" + space.robot_name(id) + "' threw" + at_tick() + ": " + faults[index].message +
-                 "; the robot is stopped");
-      }
+      if ((block.halted[i] & kThrewInThisTick) == 0) continue;
+      block.halted[i] = static_cast<std::uint8_t>(block.halted[i] & ~kThrewInThisTick);
+      const auto fault = std::ranges::find(faults[index], i, &std::pair<std::size_t, std::string>::first);
+      report_thrown(entity, fault == faults[index].end() ? std::string() : fault->second);
     }
+    faults[index].clear();
   }
+  incidents.tell(options.log, false);
 }
 
 void World::Impl::write(std::uint32_t robot, hal::Severity severity, std::string_view text,
                         std::uint32_t left_out) noexcept {
   const RobotEntity& entity = stores().robots[robot];
+  if (last_errors && severity == hal::Severity::Error)
+    return last_errors->note(number_of(robot), "robot '" + space.robot_name({robot, entity.generation}) + "'",
+                             at_tick() + ": " + std::string(text));
   std::string message = hal::message_of(space.robot_name({robot, entity.generation}), tick, text, left_out);
   if (!in_controllers) return options.log.write(severity, message);
   said[entity.block].push_back({severity, std::move(message)});
@@ -287,7 +306,10 @@ World::World(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 World::~World() {
   Impl& w = *impl_;
+  w.last_errors.emplace();
   destroy_controllers(w.stores());
+  w.last_errors->tell(w.options.log, true, hal::Severity::Error);
+  w.last_errors.reset();
   w.hook_phase = "its destructor";
   for (std::size_t i = 0; i < w.hooks.size(); ++i) {
     const hal::PluginCall marked(&Impl::name_hook, &w, i);
@@ -301,6 +323,7 @@ void World::start() {
 }
 
 void World::finish() {
+  impl_->incidents.tell(impl_->options.log, true);
   impl_->call_hooks("after_run", [](Hook& hook, HookContext& c) { hook.after_run(c); });
 }
 
@@ -337,15 +360,23 @@ const std::string& World::hook_name(std::size_t hook) const noexcept {
   return impl_->hook_names[hook];
 }
 
+namespace {
+
+/// An error for people of what `thrown` gave.
+hal::Status told_of(const std::optional<std::string>& why) {
+  if (!why) return {};
+  return hal::Error{why->empty() ? "it threw what is no std::exception" : why->substr(2)};  // behind the colon
+}
+
+}  // namespace
+
 hal::Status World::visit_controls(std::size_t hook, hal::Controls& controls) {
   Impl& w = *impl_;
   if (hook >= w.hooks.size()) return hal::Error{"there is no such hook"};
   w.hook_phase = "controls";
   const hal::PluginCall marked(&Impl::name_hook, &w, hook);
   HookContext context = w.hook_context();
-  if (const auto why = thrown([&] { w.hooks[hook]->controls(context, controls); }))
-    return hal::Error{"hook '" + w.hook_names[hook] + "' threw in controls" + *why};
-  return {};
+  return told_of(thrown([&] { w.hooks[hook]->controls(context, controls); }));
 }
 
 hal::Status World::visit_controls(RobotId robot, hal::Controls& controls) {
@@ -357,9 +388,7 @@ hal::Status World::visit_controls(RobotId robot, hal::Controls& controls) {
   const hal::ControllerType& type = *s.groups[block.group].controller;
   if (block.constructed[entity.slot] == 0 || type.controls == nullptr) return {};
   const hal::PluginCall marked(&Impl::name_step, &w, entity.block, entity.slot);
-  if (const auto why = thrown([&] { type.controls(block.controller(entity.slot), controls); }))
-    return hal::Error{"the controller of robot '" + w.space.robot_name(robot) + "' threw in controls" + *why};
-  return {};
+  return told_of(thrown([&] { type.controls(block.controller(entity.slot), controls); }));
 }
 
 void World::set_log(const hal::Log& log) {

@@ -11,6 +11,7 @@
 #include "core/physics/accuracy.hpp"
 #include "core/scenario/scenario.hpp"
 #include "core/sim/external.hpp"
+#include "core/sim/incidents.hpp"
 #include "core/sim/snapshot.hpp"
 #include "core/space/space.hpp"
 #include "core/space/state_values.hpp"
@@ -30,19 +31,6 @@ struct WorldOptions {
 
 /// State of a run.
 enum class RunState { Running, Done, Failed };
-
-/// Counted misbehaviour of controllers and bodies, for the report.
-struct Incidents {
-  std::uint64_t commands_clamped = 0;
-  std::uint64_t commands_not_finite = 0;
-  std::uint64_t controllers_thrown = 0;
-  std::uint64_t bodies_escaped = 0;
-  std::vector<std::string> first;  ///< the first few, each naming robot, tick and what happened
-
-  void remember(auto& archive) {
-    archive(commands_clamped, commands_not_finite, controllers_thrown, bodies_escaped, first);
-  }
-};
 
 /// A simulated world. Not copyable; may be moved between threads between steps.
 class World {

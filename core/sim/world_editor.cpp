@@ -6,6 +6,7 @@
 #include "core/sim/engine_factory.hpp"
 #include "core/space/attitude.hpp"
 #include "hal/angle.hpp"
+#include "hal/rounded.hpp"
 
 namespace tandem::core {
 namespace {
@@ -13,10 +14,6 @@ namespace {
 bool finite(const Pose& p) noexcept {
   return std::isfinite(p.x_m) && std::isfinite(p.y_m) && std::isfinite(p.z_m) &&
          std::fabs(p.cos_h * p.cos_h + p.sin_h * p.sin_h - 1.0) < 1e-6;
-}
-
-std::string text_of(double x_m, double y_m) {
-  return "(" + hal::format_number(x_m) + ", " + hal::format_number(y_m) + ")";
 }
 
 /// The configuration's parameters with others in their place; "group.name" is a parameter of a group.
@@ -179,7 +176,7 @@ hal::Status WorldEditor::check_place(const std::string& who, const Pose& pose) c
   if (!finite(pose)) return hal::Error{who + " needs a finite position and a heading as cosine and sine"};
   if (pose.x_m < stores_.min_x_m || pose.x_m > stores_.max_x_m || pose.y_m < stores_.min_y_m ||
       pose.y_m > stores_.max_y_m)
-    return hal::Error{who + " would be at " + text_of(pose.x_m, pose.y_m) + ", outside the arena"};
+    return hal::Error{who + " would be at " + hal::place_text(pose.x_m, pose.y_m) + ", outside the arena"};
   return {};
 }
 
@@ -220,15 +217,15 @@ hal::Result<RobotItem> WorldEditor::item_for(const NewRobot& wanted) const {
   return item;
 }
 
-hal::Status WorldEditor::accept(const std::string& who, std::size_t row) {
+hal::Status WorldEditor::accept(const std::string& who, std::size_t row, bool may_overlap) {
   const BodyKey self = BodyKey::robot(row);
   const Obstacle o = obstacle_of(self);
-  if (const auto other = in_the_way(o, self, false))
-    return hal::Error{who + " would be at " + text_of(o.x_m, o.y_m) + ", where " + name_of(*other) + " is"};
+  if (const auto other = may_overlap ? std::nullopt : in_the_way(o, self, false))
+    return hal::Error{who + " would be at " + hal::place_text(o.x_m, o.y_m) + ", where " + name_of(*other) + " is"};
   const std::uint16_t region = assigner_.find(stores_, self);
   if (region == kNoRegion) {
     return hal::Error{
-        who + " would be at " + text_of(o.x_m, o.y_m) + ", which lies in no region of an engine " +
+        who + " would be at " + hal::place_text(o.x_m, o.y_m) + ", which lies in no region of an engine " +
         (o.flies ? "that can fly it; use " +
                        engines_that(factory_.catalog(), [](const EngineTraits& traits) { return !traits.plane; })
                  : "for it")};
@@ -242,7 +239,7 @@ hal::Result<RobotId> WorldEditor::add_robot(const NewRobot& wanted) {
   if (const hal::Status placed = check_place(who, wanted.pose); !placed.ok()) return placed.error();
   const hal::Result<RobotItem> item = item_for(wanted);
   if (!item.ok()) return item.error();
-  return factory_.add(item.value(), wanted.pose, [&](std::size_t row) { return accept(who, row); });
+  return factory_.add(item.value(), wanted.pose, [&](std::size_t row) { return accept(who, row, wanted.may_overlap); });
 }
 
 // --- objects ---
@@ -267,7 +264,7 @@ hal::Status WorldEditor::check_shape(const Object& object) const {
 hal::Status WorldEditor::check_mover(const Object& object, std::uint16_t region) const {
   const std::string who = (object.kind == Object::Kind::Box ? "box '" : "cylinder '") + object.id + "'";
   if (region == kNoRegion) {
-    return hal::Error{who + " would be at " + text_of(object.x_m, object.y_m) +
+    return hal::Error{who + " would be at " + hal::place_text(object.x_m, object.y_m) +
                       ", in no region of an engine that moves objects; use " +
                       engines_that(factory_.catalog(), [](const EngineTraits& traits) { return traits.forces; })};
   }
@@ -287,7 +284,7 @@ hal::Result<ObjectId> WorldEditor::add_object(const Object& wanted) {
   object.alive = true;
   object.version = 0;
   hal::Status fits;
-  const std::string would_be = name_of(self) + " would be at " + text_of(object.x_m, object.y_m);
+  const std::string would_be = name_of(self) + " would be at " + hal::place_text(object.x_m, object.y_m);
   if (const auto other = in_the_way(obstacle_of(self), self, !object.movable)) {
     fits = hal::Error{would_be + ", where " + name_of(*other) + " is"};
   } else if (object.movable) {
@@ -367,9 +364,10 @@ hal::Status WorldEditor::room_for(BodyKey body, const Pose& pose) {
     place.sin_h = pose.sin_h;
   }
   if (const auto other = in_the_way(place, body, fixed))
-    return hal::Error{who + " would be at " + text_of(pose.x_m, pose.y_m) + ", where " + name_of(*other) + " is"};
+    return hal::Error{who + " would be at " + hal::place_text(pose.x_m, pose.y_m) + ", where " + name_of(*other) +
+                      " is"};
   if (fixed || region_at(body, pose) != kNoRegion) return {};
-  return hal::Error{who + " would be at " + text_of(pose.x_m, pose.y_m) +
+  return hal::Error{who + " would be at " + hal::place_text(pose.x_m, pose.y_m) +
                     ", which lies in no region of an engine that can move it"};
 }
 

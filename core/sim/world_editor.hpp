@@ -29,7 +29,7 @@ class WorldEditor final : public Editor {
   hal::Status check_place(const std::string& who, const Pose& pose) const;
   hal::Status check_shape(const Object& object) const;
   hal::Status check_mover(const Object& object, std::uint16_t region) const;
-  hal::Status accept(const std::string& who, std::size_t row);
+  hal::Status accept(const std::string& who, std::size_t row, bool may_overlap);
   std::string name_of(BodyKey body) const;
   /// What `o` would overlap, if anything; `of_immovable`: what cannot move may overlap its like.
   std::optional<BodyKey> in_the_way(const Obstacle& o, BodyKey self, bool of_immovable);

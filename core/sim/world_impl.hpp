@@ -118,7 +118,6 @@ struct Message {
 };
 
 struct World::Impl final : hal::RobotLog::Sink {
-  static constexpr std::size_t kIncidentsNamed = 20;
   static constexpr double kBeyond = 1.5;     // times what a robot can do: less is usual for a moment
   static constexpr double kUnlikely = 10.0;  // times what a robot can do: hardly meant
 
@@ -161,14 +160,15 @@ struct World::Impl final : hal::RobotLog::Sink {
   Incidents incidents;
   std::atomic<std::uint32_t> trouble{0};    // robots that need the serial look after a parallel phase
   std::vector<std::uint8_t> block_trouble;  // by block: 1 when one of its robots does
-  std::vector<hal::StepFault> faults;       // by block, for controllers that threw
-  std::vector<std::uint64_t> clamped;       // by block, running counts
+  std::vector<std::vector<std::pair<std::size_t, std::string>>> faults;  // by block: slots whose controllers threw
+  std::vector<std::uint64_t> clamped;                                    // by block, running counts
   std::vector<std::uint64_t> not_finite;
   std::vector<Excess> excess;              // by block, of this tick
   std::vector<std::uint8_t> excess_named;  // by group: once is enough
   bool in_controllers = false;             // they step, side by side
   std::vector<std::vector<Message>> said;  // by block, in this tick
   std::atomic<bool> any_said{false};
+  std::optional<Incidents> last_errors;  // of controllers, while they are destroyed
 
   std::optional<AsStarted> as_started;
   const Scenario* resumed_from = nullptr;  // while another world's state is read: its settings, where these are others
@@ -220,6 +220,7 @@ struct World::Impl final : hal::RobotLog::Sink {
   // --- one tick ---
   void act();
   void physics();
+  void before_sense();
   void move_part(int part);
   void settle_changes();
   void stop_on_trouble();
@@ -239,6 +240,8 @@ struct World::Impl final : hal::RobotLog::Sink {
   void note_limited(std::size_t block, std::size_t slot, const hal::Limited& what);
   void note_excess(std::size_t block, std::size_t slot, const hal::Limited& what);
   void report_excess(std::size_t block);
+  void report_not_finite(std::uint32_t entity, const RobotGroup& group);
+  void report_thrown(std::uint32_t entity, const std::string& why);
   void report_trouble();
   void paint_fields();
   static void name_step(const void* impl, std::size_t block, std::size_t index, hal::FixedText& out) noexcept;
@@ -277,11 +280,6 @@ struct World::Impl final : hal::RobotLog::Sink {
     state = RunState::Failed;
     failure = hal::printable(hal::shortened(why));
   }
-  void incident(std::string what) {
-    what = hal::printable(hal::shortened(what));
-    options.log.warning(what);
-    if (incidents.first.size() < kIncidentsNamed) incidents.first.push_back(std::move(what));
-  }
   std::string at_tick() const { return " at tick " + std::to_string(tick); }
   bool moved_in_rows(std::size_t row) noexcept {
     const std::uint16_t region = stores().bodies.region[row];
@@ -291,6 +289,16 @@ struct World::Impl final : hal::RobotLog::Sink {
     if (!body.is_object()) return "robot '" + name_of_row(body.index()) + "'";
     const Object& object = stores().objects[body.index()];
     return (object.kind == Object::Kind::Box ? "box '" : "cylinder '") + object.id + "'";
+  }
+  /// Number of a body among incidents.
+  static std::uint32_t number_of(std::uint32_t entity) noexcept { return entity << 1U; }
+  std::uint32_t number_of(BodyKey body) const noexcept {
+    const auto index = static_cast<std::uint32_t>(body.index());
+    return body.is_object() ? index << 1U | 1U : number_of(space.stores().bodies.entity[index]);
+  }
+  /// "controller of robot 'ep3'"
+  std::string controller_of(std::uint32_t entity) {
+    return "controller of robot '" + space.robot_name({entity, stores().robots[entity].generation}) + "'";
   }
   std::string name_of_row(std::size_t row) {
     const std::uint32_t entity = stores().bodies.entity[row];

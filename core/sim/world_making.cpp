@@ -13,6 +13,7 @@
 #include "core/sim/settings.hpp"
 #include "core/sim/world_impl.hpp"
 #include "core/space/attitude.hpp"
+#include "hal/rounded.hpp"
 #include "hal/vector.hpp"
 
 namespace tandem::core {
@@ -95,7 +96,7 @@ void warn_of_upright(const Scenario& scenario, const Region& region, int line, c
                             "' knows the plane alone: it stands upright on the ground",
                         true});
   };
-  if (placement.p_W[2] > 0.0) warn("is " + hal::format_number(placement.p_W[2]) + " m above the ground");
+  if (placement.p_W[2] > 0.0) warn("is " + hal::rounded(placement.p_W[2]) + " m above the ground");
   if (tilts && (placement.pitch_rad != 0.0 || placement.roll_rad != 0.0)) warn("is tilted");
 }
 
@@ -144,7 +145,7 @@ double narrowest_width_m(const Object& object) {
 /// What keeps a body of this width from fitting into the region: the arena, or walls on all sides. Empty: nothing.
 std::string too_wide_for(const SpaceStores& s, const Region& region, double width_m) {
   const auto between = [](double x_m, double y_m) {
-    return " (" + hal::format_number(x_m) + " m x " + hal::format_number(y_m) + " m)";
+    return " (" + hal::rounded(x_m) + " m x " + hal::rounded(y_m) + " m)";
   };
   const double arena_x_m = s.max_x_m - s.min_x_m;
   const double arena_y_m = s.max_y_m - s.min_y_m;
@@ -165,8 +166,7 @@ void assign_regions(const Scenario& scenario, const hal::Catalog& catalog, const
   std::size_t bad = 0;
   const auto complain = [&](int line, const std::string& who, double x_m, double y_m, const std::string& why) {
     if (++bad > kShown) return;
-    problems.push_back({scenario.file, line,
-                        who + " at (" + hal::format_number(x_m) + ", " + hal::format_number(y_m) + ") " + why, false});
+    problems.push_back({scenario.file, line, who + " at " + hal::place_text(x_m, y_m) + " " + why, false});
   };
   const bool any_solid = std::any_of(s.regions.begin(), s.regions.end(), [](const Region& r) { return !r.plane; });
   for (const RobotEntity& e : s.robots) {
@@ -383,7 +383,12 @@ void World::Impl::populate(Problems& problems) {
 void World::Impl::make_hook(std::size_t i, Problems& problems) {
   const HookConfig& config = scenario.hooks[i];
   hooks[i].reset();  // closes its files before the next opens them
-  const HookType& type = *loader->get<HookType>(config.library, config.label).value();
+  const auto found = loader->get<HookType>(config.library, config.label);
+  if (!found.ok()) {  // told when the world was made
+    hooks[i] = std::make_unique<Hook>();
+    return;
+  }
+  const HookType& type = *found.value();
   std::string why = "has no function that makes it; register it with hook_type";
   if (type.make != nullptr) {
     const hal::PluginCall call(&name_hook_made, &config);
@@ -397,6 +402,7 @@ void World::Impl::make_hook(std::size_t i, Problems& problems) {
 }
 
 void World::Impl::make_hooks(Problems& problems) {
+  add_implied_hooks(scenario, loader->catalog());
   for (const HookConfig& config : scenario.hooks) {
     const auto type = loader->get<HookType>(config.library, config.label);
     hook_names.emplace_back(type.ok() ? type.value()->name : std::string_view(config.label));
@@ -404,7 +410,10 @@ void World::Impl::make_hooks(Problems& problems) {
     if (type.ok())
       make_hook(hooks.size() - 1, problems);
     else
-      problems.push_back({scenario.file, config.line, "loop_functions: " + type.error().message, false});
+      problems.push_back(
+          {scenario.file, config.line,
+           (config.optional ? "user_functions are left out: " : "loop_functions: ") + type.error().message,
+           config.optional});
   }
 }
 

@@ -5,6 +5,7 @@
 #include "core/sim/world_impl.hpp"
 #include "core/space/attitude.hpp"
 #include "hal/device/ring_sensors.hpp"
+#include "hal/rounded.hpp"
 
 namespace tandem::core {
 namespace {
@@ -215,17 +216,16 @@ void World::Impl::treat_escape(BodyKey body) {
   const std::string what = !in_arena             ? "left the arena"
                            : region == kNoRegion ? "was put where no engine has its region,"
                                                  : "left the region of engine '" + s.regions[region].name + "'";
-  const std::string where =
-      name_of(body) + " " + what + " at (" + hal::format_number(x_m) + ", " + hal::format_number(y_m) + ")" + at_tick();
+  const std::string where = " " + what + " at " + hal::place_text(x_m, y_m) + at_tick();
   switch (scenario.escape) {
     case EscapePolicy::Error:
-      fail(where + (in_arena
-                        ? ". Give the region's side a wall or a gate, or choose escape=\"stop\" or escape=\"remove\" "
-                          "on <arena>."
-                        : ". Give the arena walls, or choose escape=\"stop\" or escape=\"remove\" on <arena>."));
+      fail(name_of(body) + where +
+           (in_arena ? ". Give the region's side a wall or a gate, or choose escape=\"stop\" or escape=\"remove\" "
+                       "on <arena>."
+                     : ". Give the arena walls, or choose escape=\"stop\" or escape=\"remove\" on <arena>."));
       break;
     case EscapePolicy::Remove:
-      incident(where + ": removed");
+      incidents.note(number_of(body), name_of(body), where + ": removed");
       if (body.is_object()) {
         space.remove_object(space.object(body.index()));
       } else {
@@ -235,7 +235,7 @@ void World::Impl::treat_escape(BodyKey body) {
       s.bodies_changed = true;
       return;
     case EscapePolicy::Stop:
-      incident(where + ": stopped at the edge");
+      incidents.note(number_of(body), name_of(body), where + ": stopped at the edge");
       break;
   }
   x_m = std::clamp(x_m, s.min_x_m, s.max_x_m);

@@ -26,6 +26,7 @@ struct NewRobot {
   Pose pose = {};
   /// Parameters that replace those of the configuration, as they would stand in the file: {"speed", "5 cm/s"}.
   std::vector<std::pair<std::string, std::string>> params = {};
+  bool may_overlap = false;  ///< its place may be occupied: engines then part the bodies, as after `set_pose`
 };
 
 /// In W.

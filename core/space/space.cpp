@@ -33,7 +33,7 @@ bool Space::contains(RobotId robot) const noexcept {
   return stores_->contains(robot);
 }
 
-bool Space::id_taken(std::string_view id) const noexcept {
+bool Space::had(std::string_view id) const noexcept {
   const auto same = [&](const auto& thing) { return thing.id == id; };
   const SpaceStores& s = *stores_;
   return s.find_entity(id).has_value() || s.object_numbers.contains(std::string(id)) ||
@@ -76,7 +76,7 @@ double full_charge(const SpaceStores& s, RobotId robot) noexcept {
 }  // namespace
 
 hal::Result<RobotId> Space::add_robot(const NewRobot& wanted) {
-  if (wanted.id.empty() || id_taken(wanted.id)) return taken(wanted.id);
+  if (wanted.id.empty() || had(wanted.id)) return taken(wanted.id);
   return editor_ == nullptr ? no_world() : editor_->add_robot(wanted);
 }
 
@@ -343,7 +343,7 @@ bool Space::contains(ObjectId object) const noexcept {
 }
 
 hal::Result<ObjectId> Space::add_object(const Object& wanted) {
-  if (wanted.id.empty() || id_taken(wanted.id)) return taken(wanted.id);
+  if (wanted.id.empty() || had(wanted.id)) return taken(wanted.id);
   return editor_ == nullptr ? no_world() : editor_->add_object(wanted);
 }
 

@@ -91,6 +91,9 @@ class Space {
   Space(const Space&) = delete;
   Space& operator=(const Space&) = delete;
 
+  /// Whether anything has this id, or had it: nothing else can be given it then.
+  bool had(std::string_view id) const noexcept;
+
   // --- robots, in the order of the experiment file, then in that of being added ---
   std::size_t robot_count() const noexcept;
   RobotId robot(std::size_t i) const noexcept;             ///< the i-th living robot
@@ -239,7 +242,6 @@ class Space {
   void set_editor(Editor* editor) noexcept { editor_ = editor; }
 
  private:
-  bool id_taken(std::string_view id) const noexcept;
   hal::Result<const hal::PublishedField*> find_published(RobotId robot, std::string_view name) const;
   hal::Result<BodyKey> key_of(const BodyId& body) const;
   void release_joints_of(BodyKey body) noexcept;

@@ -117,7 +117,7 @@ const std::vector<SoundSource>& Space::sounds() const noexcept {
 }
 
 hal::Result<std::size_t> Space::add_light(const LightSource& light) {
-  if (light.id.empty() || id_taken(light.id)) return taken(light.id);
+  if (light.id.empty() || had(light.id)) return taken(light.id);
   stores_->lights.push_back(light);
   stores_->lights.back().alive = true;
   stores_->altered = true;
@@ -125,7 +125,7 @@ hal::Result<std::size_t> Space::add_light(const LightSource& light) {
 }
 
 hal::Result<std::size_t> Space::add_sound(const SoundSource& sound) {
-  if (sound.id.empty() || id_taken(sound.id)) return taken(sound.id);
+  if (sound.id.empty() || had(sound.id)) return taken(sound.id);
   stores_->sounds.push_back(sound);
   stores_->sounds.back().alive = true;
   stores_->altered = true;

@@ -6,6 +6,7 @@
 
 #include "hal/angle.hpp"
 #include "hal/device/body_sensors.hpp"
+#include "hal/rounded.hpp"
 #include "hal/unit.hpp"
 #include "mixed_reality/desk/machine.hpp"
 #include "mixed_reality/fence/intrusion.hpp"
@@ -30,8 +31,7 @@ std::string degrees(double angle_rad) {
   return hal::format_number(std::round(angle_rad * 1800.0 / std::numbers::pi) / 10.0) + " deg";
 }
 std::string place(const core::Pose& pose) {
-  const auto m = [](double x) { return hal::format_number(std::round(x * 1e3) / 1e3); };
-  return "(" + m(pose.x_m) + ", " + m(pose.y_m) + ") m, " + degrees(pose.heading_rad());
+  return hal::place_text(pose.x_m, pose.y_m) + " m, " + degrees(pose.heading_rad());
 }
 using Place = RealRobotStatus::Place;
 

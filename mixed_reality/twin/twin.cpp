@@ -8,6 +8,7 @@
 #include "core/space/stores.hpp"
 #include "hal/device/steppers.hpp"
 #include "hal/device/turret.hpp"
+#include "hal/rounded.hpp"
 #include "hal/unit.hpp"
 #include "mixed_reality/tracking/odometry.hpp"
 
@@ -32,10 +33,9 @@ bool is_wheels(const hal::PortType& type) {
   return is<hal::WheelSpeeds>(type);
 }
 
-/// " at x, y", in m.
+/// " at (x, y)", in m.
 std::string place_text(const core::Pose& pose) {
-  const auto rounded = [](double m) { return hal::format_number(std::round(m * 1e3) * 1e-3); };
-  return " at " + rounded(pose.x_m) + ", " + rounded(pose.y_m);
+  return " at " + hal::place_text(pose.x_m, pose.y_m);
 }
 
 /// What its controller writes, in the space.
@@ -363,7 +363,7 @@ void Twin::note(const Moment& now) {
 }
 
 void Twin::note_incident(const Moment& now, const std::string& what, bool serious) {
-  std::string text = "robot '" + id_ + "' at " + hal::format_number(hal::to_seconds(now.run_ns)) + " s: " + what;
+  std::string text = "robot '" + id_ + "' at " + hal::rounded(hal::to_seconds(now.run_ns)) + " s: " + what;
   serious ? log_.warning(text) : log_.info(text);
   if (incidents_.size() < kIncidentsKept) incidents_.push_back(std::move(text));
 }

@@ -100,7 +100,7 @@ class _Maker:
             world = self.world
             if self.setup is not None:
                 self.setup(world, self.sets[number])
-            world.run(self.until)
+            world.run(self.until, progress=False)
             if self.until is not None:
                 world.finish()
             made.ticks, made.state, made.fingerprint = world.tick, world.state, world.fingerprint
@@ -189,9 +189,11 @@ def rollouts(experiment, parameter_sets=({},), seeds=(1,), *, until=None, measur
     world.setdefault("threads", 0)
     maker = _Maker(experiment, sets, seeds, until, measure, setup, world)
     runs = [None] * total
+    progress = _tandem.Progress(total, 1, "rollouts", "runs") if total else None
     workers = min(cores() if workers is None else int(workers), total)
     if workers <= 0:
         for index in range(total):
+            progress.step(index)
             runs[index] = maker.run(index)
         maker.close()
         return Rollouts(runs, len(sets), len(seeds))
@@ -211,6 +213,7 @@ def rollouts(experiment, parameter_sets=({},), seeds=(1,), *, until=None, measur
             team.append(_Worker(context, maker))
             feed(team[-1])
         while left:
+            progress.step(total - left)
             ready = multiprocessing.connection.wait([one.tasks for one in team if one.given])
             for worker in [one for one in team if one.tasks in ready]:
                 try:

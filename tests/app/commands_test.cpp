@@ -69,6 +69,9 @@ TEST_F(Commands, AndOptionsThatAreMistypedAreNamedWithWhatWasPerhapsMeant) {
   EXPECT_THAT(run({"run", "x.xml", "--sed", "5"}).errors,
               HasSubstr("there is no option '--sed'. Did you mean '--seed'?"));
   EXPECT_THAT(run({"run", "x.xml", "5"}).errors, HasSubstr("'5' is a word too many"));
+  EXPECT_THAT(run({"desk", "http://here", "nonsense"}).errors,
+              AllOf(HasSubstr("command: 'nonsense' is none of status, preflight, start"), Not(HasSubstr("{"))));
+  EXPECT_THAT(run({"desk", "http://here", "pauze"}).errors, HasSubstr("Did you mean 'pause'?"));
 }
 
 TEST_F(Commands, OfThePluginFoldersAreFoundListedAndCompleted) {
@@ -80,6 +83,36 @@ TEST_F(Commands, OfThePluginFoldersAreFoundListedAndCompleted) {
               AllOf(HasSubstr("test_sum"), HasSubstr("Add numbers. (libtest_commands_good.so)"),
                     HasSubstr("Build and run the whole test suite.")));
   EXPECT_THAT(run({"completion", "bash"}).output, HasSubstr("test_sum"));
+}
+
+TEST_F(Commands, AreListedUnderHeadings) {
+  const std::vector<std::pair<std::string, std::vector<std::string>>> groups = {
+      {"Simulate", {"run", "check", "picture", "film", "view"}},
+      {"Real robots", {"replay", "preflight", "desk", "robot", "inspect", "emulate", "calibrate"}},
+      {"Study", {"compare", "export", "sweep", "plot", "fit", "gap"}},
+      {"Extend", {"list", "describe", "plugin"}},
+      {"Tools", {"upgrade", "completion", "man", "validate", "bench"}},
+      {"Further commands", {"test_sum"}}};
+  find_in({"good"});
+  const std::string help = run({"--help"}).output;
+  ASSERT_EQ(run({"man", "pages"}).code, 0);
+  const std::string page = text_of(folder_.path() / "pages" / "tandem.1");
+  std::size_t at = 0, on_page = 0;
+  for (const auto& [heading, commands] : groups) {
+    at = help.find("\n" + heading + ":\n", at);
+    on_page = page.find(".SS " + heading + "\n", on_page);
+    ASSERT_NE(at, std::string::npos) << heading << " in " << help;
+    ASSERT_NE(on_page, std::string::npos) << heading << " in " << page;
+    const std::string part = help.substr(at, help.find("\n\n", at + 1) - at);
+    const std::string part_of_page = page.substr(on_page, page.find("\n.S", on_page + 1) - on_page);
+    for (const std::string& command : commands) {
+      EXPECT_THAT(part, HasSubstr("\n  " + command + " ")) << heading;
+      EXPECT_THAT(part_of_page, HasSubstr("\n.BR tandem\\-" + command + " (1)")) << heading;
+    }
+  }
+  EXPECT_THAT(help, Not(HasSubstr("Subcommands:"))) << "each stands under a heading";
+  for (const char* command : {"build", "docs", "format", "package", "python", "test"})
+    EXPECT_THAT(help.substr(help.find("The launcher")), HasSubstr(command));
 }
 
 TEST_F(Commands, OfOneNameAreRefusedWithBothFiles) {

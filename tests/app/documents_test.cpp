@@ -194,7 +194,7 @@ TEST(Plugins, TheirPagesShowTheVerySourcesOfTheExamples) {
   EXPECT_GT(compared, 15);
 }
 
-/// The words that follow "Subcommands:" or the options of a command, from the program's own help.
+/// The commands, or the options of a command, from the program's own help.
 std::set<std::string> words_of_help(const std::vector<std::string>& arguments, const std::regex& pattern) {
   Folder folder;
   Tandem help(arguments, folder.path());

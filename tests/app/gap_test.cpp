@@ -1,4 +1,5 @@
 // The reality gap as a user meets it: `tandem fit`, <fitted>, `tandem gap`.
+#include <algorithm>
 #include <gtest/gtest.h>
 
 #include "hal/json/json.hpp"
@@ -54,12 +55,24 @@ TEST(RealityGap, IsClosedByWhatARecordTells) {
   folder.write("plain.xml", "<fitted version=\"1\"/>");
   EXPECT_GT(apart({"--fitted", "plain.xml"}), 0.05);
   EXPECT_GT(apart({"--fitted", "fitted.xml"}), 0.0);
+
+  // What stands there is kept.
+  folder.write("gap.json", "mine");
+  Tandem gap({"gap", "r.record", "--robots", "ep1,ep2", "--report", "gap.json"}, folder.path());
+  EXPECT_EQ(gap.wait(60), 0) << gap.errors();
+  EXPECT_NE(gap.errors().find("the old 'gap.json' is kept as 'gap.json.bak'"), std::string::npos) << gap.errors();
+  EXPECT_EQ(text_of(folder.path() / "gap.json.bak"), "mine");
+  EXPECT_NE(text_of(folder.path() / "gap.json").find("median"), std::string::npos);
 }
 
 TEST(RealityGap, SaysWhatIsMissing) {
   Folder folder;
   output_of(folder, {"run", kExperiment, "--quiet", "--seconds", "5", "--record", "r.record"});
   EXPECT_NE(output_of(folder, {"fit", "r.record", "--robots", "ep1"}, 1).find("nothing was found"), std::string::npos);
+  const std::string all = output_of(folder, {"fit", "r.record"}, 1);
+  EXPECT_NE(all.find("\n  50 robots: wheels: "), std::string::npos) << all;
+  EXPECT_NE(all.find("\n  50 robots: proximity: "), std::string::npos) << all;
+  EXPECT_EQ(std::count(all.begin(), all.end(), '\n'), 3) << "a line for each reason, none for a robot: " << all;
   EXPECT_NE(output_of(folder, {"fit", "r.record", "--robots", "nobody"}, 1).find("there are: ep0"), std::string::npos);
   EXPECT_NE(output_of(folder, {"fit", kExperiment}, 1).find("error"), std::string::npos);
   EXPECT_NE(output_of(folder, {"gap", "r.record", "r.record", "--seed", "3"}, 2).find("two records"),

@@ -1,6 +1,7 @@
 // Scripts in Lua, from the command line: on a robot, in the manual, in the benchmark.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sstream>
 
 #include "controllers/lua_controller/api/manual.hpp"
 #include "tests/scenarios/process.hpp"
@@ -65,6 +66,59 @@ TEST_F(Scripts, AnErrorAtTheEndIsAFailure) {
   EXPECT_THAT(run.errors(), HasSubstr("in destroy(): end.lua:2: cannot end"));
   EXPECT_THAT(run.errors(), HasSubstr("failed at its end"));
   EXPECT_THAT(scenarios::text_of(folder_.path() / "run.log"), HasSubstr("in destroy()"));
+}
+
+/// A run of five robots with the script.
+class Swarms : public Scripts {
+ protected:
+  void run(const std::string& script, int code) {
+    folder_.write("walk.lua", script);
+    folder_.write("e.xml", R"(<tandem><framework><experiment length="2" ticks_per_second="10"/></framework><controllers>
+<lua_controller id="walk"><actuators><differential_steering/></actuators><params script="walk.lua"/></lua_controller>
+</controllers><arena size="4,4,1"><distribute><position method="grid" center="0,0,0" distances="0.3,0.3,0" layout="5,1,1"/>
+<entity quantity="5" max_trials="1"><e-puck id="ep"><controller config="walk"/></e-puck></entity></distribute></arena>
+</tandem>)");
+    Tandem program({"run", "e.xml", "--quiet"}, folder_.path());
+    EXPECT_EQ(program.wait(60), code) << program.errors();
+    errors_ = program.errors();
+  }
+  std::size_t lines_with(const std::string& part) const {
+    std::istringstream in(errors_);
+    std::size_t found = 0;
+    for (std::string line; std::getline(in, line);) found += line.find(part) != std::string::npos ? 1U : 0U;
+    return found;
+  }
+  std::string errors_;
+};
+
+TEST_F(Swarms, AnErrorOfAllIsOneLine) {
+  run("n = 0\nfunction step() n = n + 1\nif n == 4 then error('enough') end end", 3);
+  EXPECT_THAT(errors_, HasSubstr("controller of robot 'ep0' (and 4 more) threw at tick 3: walk.lua:3: enough"));
+  EXPECT_EQ(lines_with("enough"), 1U) << errors_;
+}
+
+TEST_F(Swarms, AnErrorThatComesToOneAfterTheOtherIsToldAtItsFirstAndAtTheEnd) {
+  run("n = 0\nfunction step() n = n + 1\nif robot.id == 'ep' .. n then error('turn ' .. n) end end", 3);
+  EXPECT_THAT(errors_,
+              HasSubstr("controller of robot 'ep1' threw at tick 0: walk.lua:3: turn 1; the robot is stopped"));
+  EXPECT_THAT(errors_, HasSubstr("by the end: controller of robot 'ep1' (and 3 more) threw at tick 0"));
+  EXPECT_EQ(lines_with("turn"), 2U) << errors_;
+}
+
+TEST_F(Swarms, AnErrorAtTheEndOfAllIsOneLine) {
+  run("function step() end\nfunction destroy() error('cannot end') end", 3);
+  EXPECT_THAT(errors_, HasSubstr("robot 'ep0' (and 4 more) at tick 20: in destroy(): walk.lua:2: cannot end"));
+  EXPECT_EQ(lines_with("cannot end"), 1U) << errors_;
+}
+
+TEST_F(Swarms, ASyntaxErrorIsCalledSoOnceWithItsPlace) {
+  run("function step()\n  x = = 1\nend", 1);
+  EXPECT_THAT(errors_, HasSubstr("of robot 'ep0' cannot run its script: walk.lua:2: syntax error: unexpected symbol"));
+  EXPECT_EQ(lines_with("syntax error"), 1U) << errors_;
+  folder_.write("tools.lua", "function f(\n");
+  run("require 'tools'\nfunction step() end", 1);
+  EXPECT_THAT(errors_, HasSubstr("tools.lua:2: syntax error: "));
+  EXPECT_EQ(lines_with("syntax error"), 1U) << errors_;
 }
 
 TEST_F(Scripts, WhatTheySayNeitherCommandsATerminalNorForgesALineOfTheLog) {

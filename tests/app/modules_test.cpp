@@ -98,7 +98,7 @@ TEST_F(Modules, AreListedAndTheirCommandsAreInHelpWhetherTheyAreBuiltOrNot) {
   const Ended list = run("list modules"), help = run("--help");
   EXPECT_THAT(list.text, AllOf(HasSubstr("study"), HasSubstr("NOT BUILT")));
   EXPECT_THAT(help.text, AllOf(HasSubstr("sweep"), HasSubstr("validate"), HasSubstr("emulate")));
-  for (const char* module : {"dynamics", "live", "pictures", "real", "window", "study", "lab"}) put(module);
+  for (const char* module : {"dynamics", "live", "pictures", "real", "window", "study", "lab", "argos3"}) put(module);
   const Ended all = run("list modules");
   EXPECT_THAT(all.text, AllOf(HasSubstr("lab"), Not(HasSubstr("NOT BUILT")), Not(HasSubstr("warning"))))
       << "all load, beside one another";

@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdlib>
 #include <gtest/gtest.h>
+#include <regex>
 #include <set>
 #include <sstream>
 
@@ -28,6 +29,32 @@ std::string output_of(const Folder& folder, const std::vector<std::string>& argu
 
 std::size_t lines_of(const std::string& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+TEST(Records, WhoseTablesTakeLongSayHowFarTheyAre) {
+  Folder folder;
+  output_of(folder, {"run", kConfigs + "epuck_diffusion.xml", "--quiet", "--seconds", "60", "--record", "run.record"});
+  // Whoever takes the table keeps the program waiting.
+  const std::string command = "cd '" + folder.path().string() + "' && '" + test::kBuildDir +
+                              "/bin/tandem' export run.record --csv - 2>said | (sleep 3; cat >table)";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_TRUE(std::regex_search(text_of(folder.path() / "said"), std::regex("^export: [0-9]+ %, about .* left\n")))
+      << text_of(folder.path() / "said");
+  EXPECT_EQ(lines_of(text_of(folder.path() / "table")), 1U + 600U * 50U);
+}
+
+TEST(Records, TablesKeepTheFileThatStoodInTheirPlace) {
+  Folder folder;
+  output_of(folder, {"run", kConfigs + "epuck_diffusion.xml", "--quiet", "--seconds", "1", "--record", "run.record"});
+  for (const auto& [option, name] : {std::pair("--csv", "t.csv"), std::pair("--dump", "d.csv"),
+                                     std::pair("--report", "r.json"), std::pair("--hdf5", "t.h5")}) {
+    folder.write(name, "mine");
+    Tandem made({"export", "run.record", option, name}, folder.path());
+    ASSERT_EQ(made.wait(), 0) << made.errors();
+    EXPECT_EQ(made.errors(), "the old '" + std::string(name) + "' is kept as '" + name + ".bak'\n");
+    EXPECT_EQ(text_of(folder.path() / (std::string(name) + ".bak")), "mine") << option;
+    EXPECT_NE(text_of(folder.path() / name), "mine") << option;
+  }
 }
 
 TEST(Records, HoldPosesOfEveryTickAndBecomeTables) {

@@ -246,7 +246,7 @@ TEST(View, AScriptThatIsChangedIsReadAnewAndRepeatedFromTheRecord) {
   EXPECT_EQ(viewer.ask(R"({"do":"step","ticks":20})")["ok"], true);
   viewer.state(20);
   folder.write("walk.lua", "function step()\n  robot.wheels.set_velocity(5, 5\nend");
-  said("walk.lua:3:");
+  said("the old one goes on: walk.lua:3: syntax error: ");
   folder.write("turn.lua", "return {left = 2, right = 4}");
   folder.write("walk.lua",
                "local turn = require 'turn'\nfunction step() robot.wheels.set_velocity(turn.left, turn.right) end");

@@ -22,9 +22,10 @@ using testing::Not;
 const std::string kConfigs = std::string(test::kSourceDir) + "/configs/";
 const std::string kExperiment = kConfigs + "epuck_diffusion.xml";
 
-/// A run without an end of its own.
+/// A run without an end of its own, as fast as possible.
 std::vector<std::string> endless(std::vector<std::string> more = {}) {
-  std::vector<std::string> all = {"run", kExperiment, "--watch", "--set", "framework.experiment.length=0"};
+  std::vector<std::string> all = {
+      "run", kExperiment, "--watch", "--set", "framework.experiment.length=0", "--set", "framework.time.mode=fast"};
   all.insert(all.end(), more.begin(), more.end());
   return all;
 }
@@ -74,6 +75,51 @@ TEST(Watch, KeysHoldTheRunStepItAndSetItsSpeed) {
   EXPECT_TRUE(run.shows({"unpaced"})) << run.screen.text();
   run.type("q");
   EXPECT_EQ(run.wait(), 0);
+}
+
+TEST(Watch, RunsInRealTimeUnlessTheFileOrTheCommandSaysElse) {
+  Folder folder;
+  const std::vector<std::string> words = {"run", kExperiment, "--watch", "--set", "framework.experiment.length=0"};
+  OnTerminal run(words, folder.path());
+  ASSERT_TRUE(run.shows({"1 × real time asked"})) << run.screen.text() << run.screen.before;
+  run.type("q");
+  EXPECT_EQ(run.wait(), 0);
+  std::vector<std::string> faster = words;
+  faster.insert(faster.end(), {"--speed", "5"});
+  OnTerminal fast(faster, folder.path());
+  ASSERT_TRUE(fast.shows({"5 × real time asked"})) << fast.screen.text();
+  fast.type("q");
+  EXPECT_EQ(fast.wait(), 0);
+}
+
+TEST(Watch, ShowsAMapOfTheArenaWhereThereIsRoom) {
+  Folder folder;
+  const auto file = folder.write("map.xml", R"(<tandem version="1">
+  <framework><experiment length="0" ticks_per_second="10" random_seed="1"/><time mode="realtime"/></framework>
+  <controllers><troublemaker id="t" library="test_trouble"><actuators><differential_steering/></actuators>
+    <params what="throw" at="5"/></troublemaker></controllers>
+  <arena size="4,2,1"><e-puck id="ep"><body position="-1.9,0.9,0"/><controller config="t"/></e-puck>
+    <box id="b" size="0.2,2,0.5" movable="false"><body position="1.9,0,0"/></box></arena>
+</tandem>)");
+  OnTerminal run({"run", file.string(), "--watch"}, folder.path(), 60, 24);
+  ASSERT_TRUE(run.shows({"+- 4 x 2 m ---", "|x ", "#|", "x  stopped", "#  fixed"})) << run.screen.text();
+  EXPECT_THAT(run.screen.text(), Not(HasSubstr("movable"))) << "what is not there";
+  run.resize(60, 9);
+  EXPECT_TRUE(eventually(
+      [&] {
+        run.read_all();
+        const std::string text = run.screen.text();
+        return text.find("ep ") != std::string::npos && text.find("4 x 2 m") == std::string::npos;
+      },
+      10.0))
+      << run.screen.text();
+  run.type("q");
+  EXPECT_EQ(run.wait(), 3);
+  EXPECT_FALSE(run.screen.strange());
+
+  Tandem lines({"run", file.string(), "--watch", "--seconds", "2", "--quiet"}, folder.path());
+  EXPECT_EQ(lines.wait(), 3);
+  EXPECT_THAT(lines.errors(), AllOf(HasSubstr("1 e-puck"), Not(HasSubstr("4 x 2 m")))) << "no terminal, no map";
 }
 
 TEST(Watch, ShowsARecordAsItShowsARun) {
@@ -264,11 +310,12 @@ TEST(Watch, RealRobotsHaveLinesOfTheirOwnAndArePaused) {
 
 TEST(Watch, TheNewestMessagesAreShownHoweverManyThereWere) {
   Folder folder;
-  const auto file = folder.write("careless.xml", R"(<tandem version="1">
+  folder.write("talk.lua", "function step() log('busy') end");
+  const auto file = folder.write("talkative.xml", R"(<tandem version="1">
   <framework><experiment length="0" ticks_per_second="10" random_seed="1"/></framework>
-  <controllers><drive id="d" library="test_controllers"><actuators><differential_steering/></actuators>
-    <params left="0.1" right="0.1"/></drive></controllers>
-  <arena size="2,2,1" escape="stop"><e-puck id="ep"><body position="0,0,0"/><controller config="d"/></e-puck></arena>
+  <controllers><lua_controller id="d"><actuators><differential_steering/></actuators><params script="talk.lua"/>
+    </lua_controller></controllers>
+  <arena size="2,2,1"><e-puck id="ep"><body position="0,0,0"/><controller config="d"/></e-puck></arena>
 </tandem>)");
   OnTerminal run({"run", file.string(), "--watch", "--set", "framework.time.mode=realtime"}, folder.path(), 120, 24);
   ASSERT_TRUE(run.shows({"space pause"})) << run.screen.before;  // before, the terminal may edit what is typed
@@ -278,11 +325,11 @@ TEST(Watch, TheNewestMessagesAreShownHoweverManyThereWere) {
   const auto newest = [&] {
     run.read_all();
     const std::string text = run.screen.text();
-    const std::string mark = "left the arena at";
+    const std::string mark = "robot 'ep' at tick ";
     const std::size_t at = text.rfind(mark);
     std::smatch found;
     const std::string line = at == std::string::npos ? "" : text.substr(at, text.find('\n', at) - at);
-    return std::regex_search(line, found, std::regex("at tick ([0-9]+): stopped")) ? std::stol(found[1]) : -1;
+    return std::regex_search(line, found, std::regex("at tick ([0-9]+): busy")) ? std::stol(found[1]) : -1;
   };
   ASSERT_TRUE(eventually([&] { return newest() >= 200; }, 20.0)) << run.screen.text() << run.screen.before;
   run.type("q");
@@ -317,7 +364,7 @@ TEST(Watch, ChangesNoBitOfTheRun) {
   Tandem plain({"run", kExperiment, "--seconds", "30", "--report", "plain.json", "--quiet"}, folder.path());
   ASSERT_EQ(plain.wait(60.0), 0);
   OnTerminal watched({"run", kExperiment, "--seconds", "30", "--report", "watched.json", "--quiet", "--watch",
-                      "--watch-port", "proximity"},
+                      "--watch-port", "proximity", "--set", "framework.time.mode=fast"},
                      folder.path());
   watched.type(" ..- ++");
   ASSERT_EQ(watched.wait(60.0), 0) << watched.screen.before;

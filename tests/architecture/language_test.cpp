@@ -108,8 +108,9 @@ Findings read_all() {
   Findings found;
   const fs::path top = test::kSourceDir;
   count_page(top / "README.md", 0, found);
-  for (const char* folder : {"docs", "app", "bench", "bridges", "controllers", "core", "hal", "hooks", "lab", "library",
-                             "linked", "mixed_reality", "python", "studies", "study", "tests", "validate", "window"}) {
+  for (const char* folder :
+       {"docs", "app", "bench", "bridges", "compat", "controllers", "core", "hal", "hooks", "lab", "library", "linked",
+        "mixed_reality", "python", "studies", "study", "tests", "validate", "window"}) {
     for (const auto& entry : fs::recursive_directory_iterator(top / folder)) {
       const fs::path& file = entry.path();
       const bool decision = file.parent_path().filename() == "decisions" && std::string(folder) == "docs";

@@ -21,11 +21,12 @@ const std::map<std::string, std::set<std::string>> kLayers = {
     {"window", {"window", "core", "hal"}},
     {"study", {"study", "core", "hal"}},
     {"app", {"app", "window", "study", "mixed_reality", "core", "bridges", "controllers", "hal"}},
-    {"library", {"library", "app", "core", "hal"}},
+    {"library", {"library", "compat", "app", "core", "hal"}},
     {"python", {"python", "library", "app", "core", "hal"}},
     {"validate", {"validate", "library", "app", "study", "core", "hal"}},
     {"lab", {"lab", "bench", "validate", "app", "hal"}},
-    {"linked", {"linked", "lab", "app", "bridges", "core", "hal"}},
+    {"compat", {"compat", "core", "hal"}},
+    {"linked", {"linked", "lab", "compat", "app", "bridges", "core", "hal"}},
     {"bench", {"bench", "app", "window", "study", "mixed_reality", "core", "bridges", "controllers", "hal"}}};
 
 std::string layer_of(const std::string& folder) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <gtest/gtest.h>
 
@@ -47,6 +48,22 @@ std::size_t count(const std::string& text, const std::string& part) {
   std::size_t n = 0;
   for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
   return n;
+}
+
+TEST(BenchCommand, EndsSoonAtCtrlCWithTheCodeOfThat) {
+  const std::vector<std::vector<std::string>> benches = {{"view", "--repeat", "1000"},
+                                                         {"lockstep", "--robots", "3", "--ticks", "100000000"},
+                                                         {"back", "--repeat", "1000"},
+                                                         {"diffusion", "--robots", "1000", "--ticks", "100000000"}};
+  for (const auto& words : benches) {
+    Folder folder;
+    std::vector<std::string> all{"bench"};
+    all.insert(all.end(), words.begin(), words.end());
+    Tandem bench(all, folder.path());
+    EXPECT_EQ(bench.wait(3.0), -1000) << words[0] << " is at work: " << bench.errors();
+    bench.signal(SIGINT);
+    EXPECT_EQ(bench.wait(20.0), 130) << words[0] << ": " << bench.errors();
+  }
 }
 
 TEST(BenchCommand, TellsTheWayBackToEarlierTicks) {

@@ -5,6 +5,8 @@
 #include <rapidcheck.h>
 #include <set>
 
+#include "hal/rounded.hpp"
+
 namespace tandem::hal {
 namespace {
 
@@ -70,6 +72,13 @@ TEST(Units, HaveSymbolsOfTheirOwn) {
     EXPECT_GT(u.to_si, 0.0);
     EXPECT_TRUE(symbols.insert(u.symbol).second) << u.symbol;
   }
+}
+
+TEST(Unit, PlacesForPeopleHaveMillimetres) {
+  EXPECT_EQ(place_text(1.0 / 3.0, -0.00001), "(0.333, 0)");
+  EXPECT_EQ(place_text(-2.5, 1e300), "(-2.5, 1e+300)");
+  EXPECT_EQ(rounded(2.0 / 3.0, 1), "0.7");
+  EXPECT_EQ(rounded(-1.23456), "-1.235");
 }
 
 TEST(FormatNumber, IsShortAndExact) {

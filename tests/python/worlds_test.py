@@ -3,6 +3,7 @@
 import json
 import subprocess
 import os
+import sys
 import tempfile
 import unittest
 
@@ -39,6 +40,20 @@ class Worlds(unittest.TestCase):
         world.run(until=10)
         self.assertEqual(report.returncode, 0, report.stderr)
         self.assertIn(f"{world.fingerprint:#018x}", report.stdout)
+
+    def test_that_run_long_say_how_far_they_are(self):
+        script = """import sys, time, tandem
+class Slow:
+    def before_step(self, world):
+        time.sleep(0.05)
+world = tandem.World(sys.argv[1], seed=1, hooks=[Slow])
+world.run(until=6)
+world.reset(seed=1)
+world.run(until=6, progress=False)
+"""
+        ended = subprocess.run([sys.executable, "-c", script, DIFFUSION], capture_output=True, text=True)
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        self.assertRegex(ended.stderr, r"^(run: \d+ %, about .* left\n)+$")
 
     def test_may_be_made_of_a_dictionary_or_a_text(self):
         one = tandem.World(room())

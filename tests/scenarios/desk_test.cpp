@@ -20,10 +20,12 @@ const std::string kExperiment = std::string(test::kSourceDir) + "/configs/epuck_
 
 TEST(Preflight, MovesNothingUnlessToldAndSaysWhatIsInTheWay) {
   const Folder folder;
-  Tandem alone({"preflight", kExperiment, "--wait", "1"}, folder.path());
+  Tandem alone({"preflight", kExperiment, "--wait", "4"}, folder.path());
   EXPECT_EQ(alone.wait(), 3) << alone.output() << alone.errors();
   EXPECT_NE(alone.output().find("fail  robot ep0"), std::string::npos) << alone.output();
   EXPECT_NE(alone.output().find("the run would not go well"), std::string::npos) << alone.output();
+  EXPECT_NE(alone.errors().find("waiting for robots to answer: 5"), std::string::npos)
+      << "after two seconds it says how far it is: " << alone.errors();
 
   EmulatedEpuck epuck(folder);
   ASSERT_TRUE(epuck.ready());
@@ -184,17 +186,24 @@ TEST(Desk, StartsPausesAndReplacesARobotFromATerminal) {
   EXPECT_TRUE(epuck.has_moved());
   EXPECT_FALSE(epuck.moves());
   for (const auto& wheels : epuck.wheels()) EXPECT_EQ(wheels.left, -wheels.right) << "it turns on the spot";
-  EXPECT_EQ(desk({"start"}).substr(0, 1), "0");
+  const std::string started = desk({"start"});
+  EXPECT_EQ(started.substr(0, 1), "0");
+  EXPECT_NE(started.find("start: the run has done it"), std::string::npos) << started;
   ASSERT_TRUE(eventually([&] { return epuck.moves(); }, kPatience_s)) << run.errors();
 
-  EXPECT_EQ(desk({"pause"}).substr(0, 1), "0");
+  const std::string paused = desk({"pause"});
+  EXPECT_NE(paused.find("pause: the run has done it"), std::string::npos) << paused;
+  EXPECT_NE(paused.find("is paused"), std::string::npos) << paused << "how its robots are then";
   EXPECT_TRUE(stands_at_once(epuck));
   EXPECT_NE(desk({"status"}).find("paused"), std::string::npos);
   EXPECT_NE(desk({"move", "ep0"}).find("the run has begun"), std::string::npos);
   EXPECT_EQ(desk({"go"}).substr(0, 1), "0");
   ASSERT_TRUE(eventually([&] { return epuck.moves(); }, kPatience_s));
 
-  EXPECT_EQ(desk({"replace", "nobody", "--link", "serial:x"}).substr(0, 1), "1");
+  const std::string refused = desk({"replace", "nobody", "--link", "serial:x"});
+  EXPECT_EQ(refused.substr(0, 1), "1");
+  EXPECT_NE(refused.find("the run refuses: "), std::string::npos) << refused;
+  EXPECT_EQ(refused.find("has done it"), std::string::npos) << refused;
   const std::string link = "serial:" + (other.path() / "ep0").string();
   EXPECT_EQ(desk({"replace", "ep0", "--link", link, "--as", "ep7"}).substr(0, 1), "0");
   EXPECT_TRUE(stands_at_once(epuck));
@@ -202,7 +211,7 @@ TEST(Desk, StartsPausesAndReplacesARobotFromATerminal) {
                          kPatience_s))
       << desk({"status"});
   EXPECT_FALSE(spare.has_moved());
-  EXPECT_EQ(desk({"arm", "ep0"}).substr(0, 1), "0");
+  EXPECT_NE(desk({"arm", "ep0"}).find("arm ep0: the run has done it"), std::string::npos);
   EXPECT_TRUE(eventually([&] { return spare.moves(); }, kPatience_s)) << run.errors();
   EXPECT_FALSE(epuck.moves());
   EXPECT_EQ(desk({"estop"}).substr(0, 1), "0");

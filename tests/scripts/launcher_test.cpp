@@ -58,6 +58,17 @@ TEST_F(Launcher, DoesNotWaitForOtherErrorsOfApt) {
   EXPECT_EQ(text_of(folder_.path() / "calls"), "update\n");
 }
 
+TEST_F(Launcher, SaysHowFarALongBuildIsWhereThereIsNoTerminal) {
+  std::string launcher = text_of(folder_.path() / "tandem");
+  for (std::size_t at = 0; (at = launcher.find("SECONDS + 30", at)) != std::string::npos;)
+    launcher.replace(at, 12, "SECONDS + 1");  // a second for half a minute
+  std::ofstream(folder_.path() / "tandem") << launcher;
+  command("apt-get", "");
+  command("cmake", "for i in 1 2 3; do echo \"[$i/40] Building x$i\"; /bin/sleep 1.1; done; exit 1");
+  EXPECT_THAT(build(), AllOf(HasSubstr("building all (preset release)"), HasSubstr("still building: [2/40]"),
+                             HasSubstr("still building: [3/40]")));
+}
+
 /// A launcher whose program was built after its sources, and says how it was started.
 class BuiltLauncher : public Launcher {
  protected:

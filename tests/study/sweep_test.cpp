@@ -199,6 +199,47 @@ TEST_F(Sweep, ARunWithAStepThatDoesNotReturnFailsByItself) {
               AllOf(HasSubstr("has not returned for 2 s, the study's step_limit"), HasSubstr("hook 'measuring'")));
 }
 
+TEST_F(Sweep, SaysHowFarItIsWhereThereIsNoTerminal) {
+  experiment();
+  study(R"(<set path="loop_functions.loop_seed" value="2"/><seeds first="1" count="4"/>)", "step_limit=\"5\"");
+  EXPECT_EQ(tandem({"sweep", "s.xml", "--jobs", "2"}), 3);
+  EXPECT_THAT(errors_, HasSubstr("sweep: 75 %, about "));
+  EXPECT_THAT(errors_, Not(HasSubstr("\r"))) << "no bar";
+}
+
+TEST_F(Sweep, RunsThatFailForOneReasonAreOneLine) {
+  folder_.write("e.xml", R"(<tandem>
+  <framework><experiment length="2" ticks_per_second="10"/></framework>
+  <controllers><troublemaker id="t" library="test_trouble"><actuators><differential_steering/></actuators>
+    <params what="throw" at="5"/></troublemaker></controllers>
+  <arena size="4,4,1"><e-puck id="ep"><body position="0,0,0"/><controller config="t"/></e-puck>
+    <e-puck id="er"><body position="1,0,0"/><controller config="t"/></e-puck></arena>
+</tandem>)");
+  study(R"(<seeds first="1" count="5"/>)");
+  EXPECT_EQ(tandem({"sweep", "s.xml", "--jobs", "2"}), 3);
+  EXPECT_THAT(output_, HasSubstr("0 done, 5 failed"));
+  EXPECT_THAT(output_,
+              testing::ContainsRegex("run [0-4] \\(and 4 more\\) failed: controller of robot 'ep' \\(and 1 more"
+                                     "\\) threw at tick 5"));
+  EXPECT_EQ(output_.find(" failed: "), output_.rfind(" failed: ")) << output_;
+}
+
+TEST_F(Sweep, KeepsTheTableOfAnotherSweep) {
+  experiment();
+  study(R"(<seeds first="1" count="2"/>)");
+  folder_.write("s.csv", "mine");
+  ASSERT_EQ(tandem({"sweep", "s.xml"}), 0) << errors_;
+  EXPECT_THAT(errors_, HasSubstr("the old 's.csv' is kept as 's.csv.bak'"));
+  EXPECT_EQ(file("s.csv.bak"), "mine");
+  EXPECT_EQ(lines("s.csv").size(), 3U);
+  EXPECT_EQ(tandem({"sweep", "s.xml"}), 1);
+  EXPECT_THAT(errors_, HasSubstr("there is a table 's.sqlite' already: --resume makes the runs that it lacks"));
+  study(R"(<seeds first="1" count="3"/>)");
+  ASSERT_EQ(tandem({"sweep", "s.xml", "--resume"}), 0) << errors_;
+  EXPECT_EQ(lines("s.csv").size(), 4U);
+  EXPECT_EQ(file("s.csv.bak"), "mine") << "its own table is no other's";
+}
+
 TEST_F(Sweep, GoesOnPastRunsThatThrowCrashAndHang) {
   experiment();
   const std::string rest = R"(<seeds first="1" count="9"/>)";

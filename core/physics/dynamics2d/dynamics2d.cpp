@@ -16,6 +16,7 @@
 #include "core/physics/world_memory.hpp"
 #include "core/space/object_index.hpp"
 #include "hal/check.hpp"
+#include "hal/rounded.hpp"
 
 namespace tandem::core {
 namespace {
@@ -735,7 +736,7 @@ class Dynamics2d final : public Solver {
     if (!finite || vx * vx + vy * vy > hop * hop) {
       if (entry.owned)
         trouble.push_back({entry.key, finite ? "moves faster than its engine can follow (" +
-                                                   hal::format_number(std::hypot(vx, vy)) + " m/s)"
+                                                   hal::rounded(std::hypot(vx, vy)) + " m/s)"
                                              : "has a position or speed that is not a finite number"});
       return;
     }

@@ -7,6 +7,7 @@
 
 #include "core/physics/wheels.hpp"
 #include "core/space/attitude.hpp"
+#include "hal/rounded.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::core {
@@ -812,10 +813,10 @@ void World3d::check(BodyProxy& proxy) {
   if (finite && v <= kFastest_m_s && length(now.w_rad_s) <= kFastestTurn_rad_s) return;
   proxy.lost = true;
   if (!proxy.light()) dBodyDisable(proxy.body.get());
-  report(proxy, !finite            ? std::string("has a position or speed that is not a finite number")
-                : v > kFastest_m_s ? "moves faster than its engine can follow (" + hal::format_number(v) + " m/s)"
-                                   : "turns faster than its engine can follow (" +
-                                         hal::format_number(length(now.w_rad_s)) + " rad/s)");
+  report(proxy, !finite ? std::string("has a position or speed that is not a finite number")
+                : v > kFastest_m_s
+                    ? "moves faster than its engine can follow (" + hal::rounded(v) + " m/s)"
+                    : "turns faster than its engine can follow (" + hal::rounded(length(now.w_rad_s)) + " rad/s)");
 }
 
 void World3d::write_back(SpaceStores& stores, const BodyProxy& proxy, double tick_s) const {

@@ -9,6 +9,7 @@
 #include "core/physics/crowd_passes.hpp"
 #include "core/physics/walls.hpp"
 #include "core/physics/wheels.hpp"
+#include "hal/rounded.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::core {
@@ -276,8 +277,8 @@ void Kinematics2d::collect(std::vector<Trouble>& all) {
     if ((b.flags[row] & kAlive) == 0 || !mine(*stores, b.region[row]) || !too_fast(b.left_m_s[row], b.right_m_s[row]))
       continue;
     all.push_back({BodyKey::robot(row), "has wheels that are faster than its engine can follow (" +
-                                            hal::format_number(b.left_m_s[row]) + " and " +
-                                            hal::format_number(b.right_m_s[row]) + " m/s)"});
+                                            hal::rounded(b.left_m_s[row]) + " and " + hal::rounded(b.right_m_s[row]) +
+                                            " m/s)"});
   }
 }
 

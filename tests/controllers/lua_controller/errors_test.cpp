@@ -12,7 +12,8 @@ using ::testing::Not;
 
 TEST(LuaErrors, NameTheLineOfASyntaxError) {
   Scripted world({.text = "function step()\n  x = = 1\nend"});
-  EXPECT_THAT(world.problems, AllOf(HasSubstr("script.lua:2:"), HasSubstr("near '='"), HasSubstr("controller 'c'")));
+  EXPECT_THAT(world.problems,
+              AllOf(HasSubstr("script.lua:2: syntax error: "), HasSubstr("near '='"), HasSubstr("controller 'c'")));
 }
 
 TEST(LuaErrors, NameAMissingStep) {

@@ -80,7 +80,7 @@ TEST(Controls, SayWhatIsWrong) {
   error(set("hook:knobs", "shape", "cone"), "is one of: box, cylinder");
   error(set("hook:knobs", "sise", 5), "Did you mean 'size'");
   error(set("hook:knobs", "drop", 1), "no value 'drop' to set");
-  error(set("hook:knobs", "prefix", "bad"), "threw in controls: a bad prefix");
+  error(set("hook:knobs", "prefix", "bad"), "hook:knobs: a bad prefix");
   error(press("hook:knobs", "size"), "no button 'size' to press");
   error(press("hook:nobs", "drop"), "there is no owner 'hook:nobs'");
   error(set("robot:none", "pace", 50), "no robot 'none'");

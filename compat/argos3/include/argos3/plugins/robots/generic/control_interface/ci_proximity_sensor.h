@@ -1,0 +1,21 @@
+// Infrared proximity sensors of any robot.
+#ifndef TANDEM_ARGOS3_CI_PROXIMITY_SENSOR_H
+#define TANDEM_ARGOS3_CI_PROXIMITY_SENSOR_H
+#include <vector>
+
+#include <argos3/core/control_interface/ci_sensor.h>
+
+namespace argos {
+
+/// exp(-distance in m); 0 where nothing is in range. Counter-clockwise from forward.
+class CCI_ProximitySensor : public CCI_Sensor {
+ public:
+  const std::vector<Real>& GetReadings() const { return m_tReadings; }
+
+ protected:
+  std::vector<Real> m_tReadings;
+};
+
+}  // namespace argos
+
+#endif

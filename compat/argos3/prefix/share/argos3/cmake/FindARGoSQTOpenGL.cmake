@@ -1,0 +1,2 @@
+include(${CMAKE_CURRENT_LIST_DIR}/ARGoSCheckQTOpenGL.cmake)
+set(ARGoSQTOpenGL_FOUND TRUE)

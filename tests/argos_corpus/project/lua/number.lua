@@ -1,0 +1,2 @@
+-- A script that files.lua runs.
+return 42

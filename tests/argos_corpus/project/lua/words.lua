@@ -1,0 +1,4 @@
+-- A module that files.lua requires.
+return {
+   hello = function() return "hello" end
+}
