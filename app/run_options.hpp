@@ -71,7 +71,8 @@ struct RunOptions {
   std::optional<std::uint64_t> seed;
   std::optional<std::int64_t> threads;
   std::vector<std::string> overrides;
-  std::string report;  ///< file, or "-"
+  bool allow_io = false;  ///< of all scripts in Lua
+  std::string report;     ///< file, or "-"
   PictureRequest pictures;
   std::string trajectory;            ///< CSV file, of every robot unless the experiment says which
   std::string record;                ///< record file, as the experiment says or of every robot's pose and state
@@ -92,6 +93,13 @@ struct RunOptions {
   bool quiet = false;           ///< no table
   double step_timeout_s = 5.0;  ///< after which a controller or hook that does not return is named; 0: never
   double step_limit_s = 0.0;    ///< after which it ends the run, as a failure; 0: never
+
+  /// `overrides`, and what other options change in the experiment.
+  std::vector<std::string> all_overrides() const {
+    std::vector<std::string> all = overrides;
+    if (allow_io) all.emplace_back("controllers.lua_controller[*].params.allow_io=true");
+    return all;
+  }
 };
 
 }  // namespace tandem::app

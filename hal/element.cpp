@@ -48,9 +48,15 @@ const Element::Attribute* find_attribute(const Element& element, std::string_vie
 }
 
 Problem problem_of(const Element& element, const Element::Attribute* attribute, std::string message) {
-  if (attribute != nullptr && !attribute->origin.empty()) return {attribute->origin, 0, std::move(message), false};
+  if (attribute != nullptr && !attribute->origin.empty()) return {attribute->origin, 0, std::move(message)};
   const int line = attribute != nullptr && attribute->line > 0 ? attribute->line : element.line;
-  return {element.file, line, std::move(message), false};
+  return {element.file, line, std::move(message)};
+}
+
+/// Of what nothing reads. What was set beside the file, which has no line, is meant to be read.
+Problem unread(const Element& element, Problem problem) {
+  problem.ignored = problem.warning = element.argos && problem.line > 0;
+  return problem;
 }
 
 }  // namespace
@@ -64,6 +70,21 @@ std::string to_text(const Problem& problem) {
 bool has_errors(const Problems& problems, std::size_t first) noexcept {
   return std::any_of(problems.begin() + static_cast<std::ptrdiff_t>(std::min(first, problems.size())), problems.end(),
                      [](const Problem& p) { return !p.warning; });
+}
+
+void count_ignored(Problems& problems) {
+  for (std::size_t i = 0; i < problems.size(); ++i) {
+    if (!problems[i].ignored) continue;
+    const auto same = [&](const Problem& p) { return p.ignored && p.message == problems[i].message; };
+    const auto more = std::remove_if(problems.begin() + static_cast<std::ptrdiff_t>(i) + 1, problems.end(), same);
+    const auto count = std::distance(more, problems.end());
+    problems.erase(more, problems.end());
+    if (count > 0) problems[i].message += " (and " + std::to_string(count) + " more such)";
+  }
+}
+
+void refuse_ignored(Problems& problems) {
+  for (Problem& problem : problems) problem.warning = problem.warning && !problem.ignored;
 }
 
 const std::string* Element::attribute(std::string_view attribute_name) const noexcept {
@@ -81,7 +102,15 @@ const Element* Element::child(std::string_view child_name) const noexcept {
 }
 
 Problem problem_at(const Element& element, std::string message) {
-  return {element.file, element.line, std::move(message), false};
+  return {element.file, element.line, std::move(message)};
+}
+
+Problem unread_at(const Element& element, std::string message) {
+  return unread(element, problem_at(element, std::move(message)));
+}
+
+Problem unread_at(const Element& element, std::string_view attribute, std::string message) {
+  return unread(element, problem_at(element, attribute, std::move(message)));
 }
 
 Problem problem_at(const Element& element, std::string_view attribute, std::string message) {
@@ -189,6 +218,10 @@ void ElementReader::visit(const Param& param) {
     for (const Element& child : element_.children) known_children_.push_back(child.name);
     return;
   }
+  if (param.name == kArgosParam) {
+    *param.as<bool>() = element_.argos;
+    return;
+  }
   known_.emplace_back(param.name);
   const std::string* const text = element_.attribute(param.name);
   if (text == nullptr) return;
@@ -204,6 +237,8 @@ void ElementReader::visit(const Param& param) {
     read(param, *text, *flag);
   else if (auto* const triple = param.as<std::array<double, 3>>(); triple != nullptr)
     read(param, *text, *triple);
+  else if (auto* const interval = param.as<Interval>(); interval != nullptr)
+    read(param, *text, *interval);
 }
 
 void ElementReader::read(const Param& param, const std::string& text, double& value) {
@@ -271,6 +306,26 @@ void ElementReader::read(const Param& param, const std::string& text, std::array
   value = parsed;
 }
 
+void ElementReader::read(const Param& param, const std::string& text, Interval& value) {
+  const std::size_t colon = text.find(':');
+  const auto first = parse_quantity(std::string_view(text).substr(0, colon), *param.bare);
+  if (!first.ok()) return problem(param.name, first.error().message);
+  const double least = colon == std::string::npos ? -first.value() : first.value();
+  double most = first.value();
+  if (colon != std::string::npos) {
+    const auto second = parse_quantity(std::string_view(text).substr(colon + 1), *param.bare);
+    if (!second.ok()) return problem(param.name, second.error().message);
+    most = second.value();
+  }
+  if (least > most)
+    return problem(param.name, "'" + text +
+                                   "' is no range: write its least value first, \"-0.1:0.2\", or one number "
+                                   "that is not negative, \"0.1\", for -0.1:0.1");
+  if (in_range(param.name, text, least, param.range, *param.bare) &&
+      in_range(param.name, text, most, param.range, *param.bare))
+    value = {least, most};
+}
+
 void ElementReader::read_group(std::string_view name, const Param::Group& group) {
   known_children_.emplace_back(name);
   const Element* first = nullptr;
@@ -278,7 +333,7 @@ void ElementReader::read_group(std::string_view name, const Param::Group& group)
     if (child.name != name) continue;
     if (first != nullptr) {
       problems_.push_back(
-          problem_at(child, "a second <" + child.name + ">; the first is on line " + std::to_string(first->line)));
+          unread_at(child, "a second <" + child.name + ">; the first is on line " + std::to_string(first->line)));
       continue;
     }
     first = &child;
@@ -304,15 +359,16 @@ void ElementReader::finish() {
   finish_attributes();
   for (const Element& child : element_.children) {
     if (std::find(known_children_.begin(), known_children_.end(), child.name) != known_children_.end()) continue;
-    problems_.push_back(problem_at(child, cannot_hold(element_, child, known_children_)));
+    problems_.push_back(unread_at(child, cannot_hold(element_, child, known_children_)));
   }
 }
 
 void ElementReader::finish_attributes() {
   for (const Element::Attribute& a : element_.attributes) {
     if (std::find(known_.begin(), known_.end(), a.name) != known_.end()) continue;
-    problems_.push_back(problem_of(
-        element_, &a, "<" + element_.name + "> has no attribute '" + a.name + "'" + did_you_mean(a.name, known_)));
+    problems_.push_back(unread(element_, problem_of(element_, &a,
+                                                    "<" + element_.name + "> has no attribute '" + a.name + "'" +
+                                                        did_you_mean(a.name, known_))));
   }
 }
 
@@ -326,6 +382,8 @@ std::string value_text(const Param& p, const Number& number, const char* yes, co
   if (const auto* const v = p.as<bool>(); v != nullptr) return *v ? yes : no;
   if (const auto* const v = p.as<std::array<double, 3>>(); v != nullptr)
     return number((*v)[0]) + between + number((*v)[1]) + between + number((*v)[2]);
+  if (const auto* const v = p.as<Interval>(); v != nullptr)
+    return v->least == -v->most ? number(v->most) : number(v->least) + ":" + number(v->most);
   return *p.text();
 }
 
@@ -352,7 +410,8 @@ void ElementWriter::visit(const Param& param) {
     }
     return;
   }
-  if (param.name == kOtherParams || param.name == kPathParam || param.name == kWholeElement) return;  // written already
+  if (param.name == kArgosParam) *param.as<bool>() = element_.argos;
+  if (is_no_attribute(param.name)) return;  // written already
   if (element_.attribute(param.name) != nullptr) return;
   const auto exactly = [&](double v) { return format_exactly(v, *param.bare); };
   element_.attributes.push_back({std::string(param.name), value_text(param, exactly, "true", "false", ","), 0});
@@ -363,6 +422,7 @@ Element& ElementWriter::add_child(std::string_view name) {
   child.name = name;
   child.file = element_.file;
   child.line = element_.line;
+  child.argos = element_.argos;
   return child;
 }
 
@@ -378,6 +438,8 @@ std::string range_of(const Param& p) {
   }
   const std::string symbol(p.bare->symbol);
   if (p.as<std::array<double, 3>>() != nullptr) return "three numbers" + (symbol.empty() ? "" : " in " + symbol);
+  if (p.as<Interval>() != nullptr)
+    return "LEAST:MOST, or one number for -x:x" + (symbol.empty() ? "" : "; in " + symbol);
   const bool bounded =
       p.range.min > -std::numeric_limits<double>::infinity() || p.range.max < std::numeric_limits<double>::infinity();
   const std::string limits = bounded ? range_text(p.range, *p.bare) : "";
@@ -404,14 +466,14 @@ void ManualWriter::visit(const Param& param) {
     indent_.resize(indent_.size() - 4);
     return;
   }
-  if (name == kPathParam) return;
+  if (name == kPathParam || name == kArgosParam) return;
   if (name == kOtherParams || name == kWholeElement) {
     text_ += indent_ + "NAME=\"TEXT\"  (any other name)\n" + doc;
     return;
   }
-  const bool triple = param.as<std::array<double, 3>>() != nullptr;
+  const bool several = param.as<std::array<double, 3>>() != nullptr || param.as<Interval>() != nullptr;
   const auto number = [&](double v) {
-    return triple ? format_number(v / param.bare->to_si) : format_quantity(v, *param.bare);
+    return several ? format_number(v / param.bare->to_si) : format_quantity(v, *param.bare);
   };
   const std::string range = range_of(param);
   text_ += indent_ + name + "=\"" + value_text(param, number, "true", "false", ",") + "\"" +

@@ -16,6 +16,7 @@ struct Problem {
   int line = 0;
   std::string message;
   bool warning = false;
+  bool ignored = false;  ///< a warning of what an ARGoS file says and nothing reads
 };
 using Problems = std::vector<Problem>;
 
@@ -23,6 +24,13 @@ using Problems = std::vector<Problem>;
 std::string to_text(const Problem& problem);
 /// Whether an error is among the problems from number `first` on.
 bool has_errors(const Problems& problems, std::size_t first = 0) noexcept;
+/// Of what is ignored, each kind of message stays once, with the number of the others.
+void count_ignored(Problems& problems);
+/// Makes errors of what is ignored.
+void refuse_ignored(Problems& problems);
+
+/// Root of the experiment files of ARGoS 3, which ignores what it does not know.
+inline constexpr std::string_view kArgosRoot = "argos-configuration";
 
 /// An XML element without the XML library.
 struct Element {
@@ -37,6 +45,7 @@ struct Element {
   int line = 0;
   std::vector<Attribute> attributes;
   std::vector<Element> children;
+  bool argos = false;  ///< of a file whose root is `kArgosRoot`
 
   const std::string* attribute(std::string_view attribute_name) const noexcept;
   const Element* child(std::string_view child_name) const noexcept;
@@ -45,6 +54,10 @@ struct Element {
 /// A problem with an element, or with one of its attributes (named in the message, even when it is not there).
 Problem problem_at(const Element& element, std::string message);
 Problem problem_at(const Element& element, std::string_view attribute, std::string message);
+
+/// A problem with what nothing reads: an error; in an ARGoS file a warning.
+Problem unread_at(const Element& element, std::string message);
+Problem unread_at(const Element& element, std::string_view attribute, std::string message);
 
 /// "a, b, c": at most the first 20, for messages.
 std::string listed(const std::vector<std::string>& names);
@@ -81,6 +94,7 @@ class ElementReader final : public ParamVisitor {
   void read(const Param& param, const std::string& text, std::int64_t& value);
   void read(const Param& param, const std::string& text, bool& value);
   void read(const Param& param, const std::string& text, std::array<double, 3>& value);
+  void read(const Param& param, const std::string& text, Interval& value);
   void read(const Param& param, const std::string& text, const Param::Choice& choice);
   void read_group(std::string_view name, const Param::Group& group);
   void read_list(std::string_view name, ParamList& list);

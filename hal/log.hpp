@@ -17,6 +17,7 @@ class Log {
   Log() = default;
   explicit Log(Sink sink) : sink_(std::move(sink)) {}
 
+  bool drops_all() const noexcept { return !sink_; }
   void info(std::string_view text) const { write(Severity::Info, text); }
   void warning(std::string_view text) const { write(Severity::Warning, text); }
   void error(std::string_view text) const { write(Severity::Error, text); }

@@ -1,7 +1,7 @@
 // Parameters of classes that take whatever their file says, such as scripts: beside the described ones, all others.
 //
-// Both go through ParamVisitor::text under names that no file can have, so that visitors that know nothing of it need
-// not: the reader of experiment files answers, the manual names it, others leave it alone.
+// These go through ParamVisitor under names that no file can have, so that visitors that know nothing of it need not:
+// the reader of experiment files answers, the manual names it, others leave it alone.
 #pragma once
 #include <string>
 #include <string_view>
@@ -15,9 +15,21 @@ namespace tandem::hal {
 inline constexpr std::string_view kOtherParams = "*";
 /// Text parameter that the reader makes a path that can be opened, where it names one relative to the file.
 inline constexpr std::string_view kPathParam = "*path";
-
+/// Flag that the reader sets where the file's root is ARGoS': a description may then begin with other defaults.
+inline constexpr std::string_view kArgosParam = "*argos";
 /// Text parameter for which the reader gives the whole element, children and all, as XML.
 inline constexpr std::string_view kWholeElement = "**";
+
+constexpr bool is_no_attribute(std::string_view name) noexcept {
+  return name == kOtherParams || name == kPathParam || name == kArgosParam || name == kWholeElement;
+}
+
+/// Whether what is described stands in an ARGoS file; before the parameters whose defaults depend on it.
+inline bool in_argos_file(ParamVisitor& v) {
+  bool argos = false;
+  v.flag(kArgosParam, argos, "");
+  return argos;
+}
 
 /// A parameter that only its user knows.
 struct NamedText {

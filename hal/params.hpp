@@ -21,6 +21,16 @@ struct Range {
   double max = std::numeric_limits<double>::infinity();
 };
 
+/// Interval of an error, in SI: in a file "-0.1:0.2", or one number x for -x:x.
+struct Interval {
+  double least = 0.0, most = 0.0;
+  /// -x:x
+  static constexpr Interval around(double x) noexcept { return {-x, x}; }
+  constexpr bool empty() const noexcept { return least == 0.0 && most == 0.0; }
+  /// At `part` of its half from its middle, which is in [-1, 1).
+  constexpr double at(double part) const noexcept { return 0.5 * (least + most) + 0.5 * (most - least) * part; }
+};
+
 inline constexpr Range kAny{};
 inline constexpr Range kNotNegative{0.0, std::numeric_limits<double>::infinity()};
 
@@ -63,10 +73,12 @@ struct Param {
     void (*describe)(void* value, ParamVisitor& visitor);  ///< the inner struct, to any visitor
   };
   std::string_view name;
-  std::variant<double*, std::int64_t*, bool*, std::string*, Choice, std::array<double, 3>*, Group, ParamList*> value;
+  std::variant<double*, std::int64_t*, bool*, std::string*, Choice, std::array<double, 3>*, Group, ParamList*,
+               Interval*>
+      value;
   std::string_view doc;
-  const Unit* bare = &unit::none;  ///< of a number and of a vector
-  Range range = kAny;              ///< of a number and of an integer
+  const Unit* bare = &unit::none;  ///< of a number, a vector and an interval
+  Range range = kAny;              ///< of a number, an integer and an interval's ends
 
   /// Null: it is something else.
   template <class T>
@@ -109,6 +121,11 @@ class ParamVisitor {
   /// "x,y,z", each in `bare`.
   void vector(std::string_view name, std::array<double, 3>& value_si, const Unit& bare, std::string_view doc) {
     visit({name, &value_si, doc, &bare});
+  }
+  /// An error that lies between two values.
+  void interval(std::string_view name, Interval& value_si, const Unit& bare, std::string_view doc,
+                Range range_si = kAny) {
+    visit({name, &value_si, doc, &bare, range_si});
   }
   /// A struct within the struct: in a file, the attributes of a child element `name`, of which there is one at most.
   template <Described T>

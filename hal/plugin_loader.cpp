@@ -97,23 +97,28 @@ fs::path PluginLoader::look_for(const std::string& library, std::string& looked)
       looked += "\n    " + (folder / name).string();
     }
   }
-  // A file written for another build tree: the library's own name, in our folders.
-  for (const fs::path& folder : search_) {
-    for (const fs::path& name : spellings(fs::path(library).filename())) {
-      if (fs::is_regular_file(folder / name, ignored)) return fs::weakly_canonical(folder / name);
-    }
-  }
   return {};
+}
+
+/// A library of ours that is called like the one that is not there: somebody else's, perhaps.
+std::string PluginLoader::namesake_of(const std::string& library) const {
+  if (!fs::path(library).has_parent_path()) return {};
+  std::string ignored;
+  const fs::path found = look_for(fs::path(library).filename().string(), ignored);
+  return found.empty() ? std::string()
+                       : "\n  Another library of that name is " + found.string() + "; library=\"" +
+                             fs::path(library).stem().string() + "\", without a folder, takes it.";
 }
 
 Result<fs::path> PluginLoader::find(const std::string& library) const {
   std::string looked, again;
   if (fs::path found = look_for(library, looked); !found.empty()) return found;
-  if (on_demand_.make != nullptr && on_demand_.make(library)) {
+  const bool ours = !fs::path(library).has_parent_path();  // else a file that its writer made
+  if (ours && on_demand_.make != nullptr && on_demand_.make(library)) {
     if (fs::path found = look_for(library, again); !found.empty()) return found;
   }
   return Error{"library '" + library + "' is not there; looked for" + looked +
-               "\n  Build it, correct library=\"…\", or add its folder to TANDEM_PLUGIN_PATH."};
+               "\n  Build it, correct library=\"…\", or add its folder to TANDEM_PLUGIN_PATH." + namesake_of(library)};
 }
 
 Status PluginLoader::open(const std::string& library) {

@@ -77,6 +77,7 @@ class PluginLoader {
   Status load_once(const std::string& library);
   Result<PluginNote> judge(const std::string& path);
   std::filesystem::path look_for(const std::string& library, std::string& looked) const;
+  std::string namesake_of(const std::string& library) const;
   Status register_types(const std::string& path, const PluginInfo& info, const PluginNote& note);
 
   std::filesystem::path beside_;

@@ -196,20 +196,22 @@ bool take_all(std::span<const std::byte> segment, PluginNote& note, bool& built)
   return true;
 }
 
-Error damaged() {
-  return Error{"is no whole shared object: it was cut off or damaged; build it again"};
-}
-
-/// Whether the bytes of `word` stand somewhere in the file.
-bool mentions(const Source& source, std::string_view word) {
-  constexpr std::uint64_t kPiece = 1U << 20;
-  std::string piece;
+/// Whether names of the namespace `argos` are among the symbols.
+bool names_argos(const Source& source) {
+  constexpr std::string_view kMangled = "N5argos";
+  constexpr std::size_t kPiece = 1U << 16;
+  std::vector<std::byte> bytes(kPiece + kMangled.size());
   for (std::uint64_t at = 0; at < source.size(); at += kPiece) {
-    piece.resize(static_cast<std::size_t>(std::min(source.size() - at, kPiece + word.size())));
-    if (!source.read(at, std::as_writable_bytes(std::span(piece)))) return false;
-    if (piece.find(word) != std::string::npos) return true;
+    const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(bytes.size(), source.size() - at));
+    if (!source.read(at, std::span(bytes).first(size))) return false;
+    if (std::string_view(reinterpret_cast<const char*>(bytes.data()), size).find(kMangled) != std::string_view::npos)
+      return true;
   }
   return false;
+}
+
+Error damaged() {
+  return Error{"is no whole shared object: it was cut off or damaged; build it again"};
 }
 
 Result<PluginNote> parse(const Source& source) {
@@ -246,7 +248,7 @@ Result<PluginNote> parse(const Source& source) {
     if (!take_all(bytes, note, built))
       return Error{"has a damaged note .note.tandem; build it again, all of it with one compiler and one Tandem"};
   }
-  if (!built && mentions(source, "N5argos"))  // as the compiler spells names in ARGoS' namespace
+  if (!built && names_argos(source))
     return Error{
         "was built for ARGoS 3, not against Tandem. Build it again: in its build folder, "
         "CMAKE_PREFIX_PATH=PREFIX cmake --fresh …, where PREFIX is lib/tandem of an installation or build/release/lib of "

@@ -123,8 +123,12 @@ struct PortType : RowType {
   /// Takes away what leads deeper into something; (out_x, out_y) is the way out in W, of length 1. Turning and coming
   /// out stay possible. @returns whether there was such.
   bool (*keep_out)(void* command, const Pose& at, double out_x, double out_y) = nullptr;
+  /// The port that this one is with more room than any real robot has; empty: none.
+  std::string_view grows = {};
 
   std::string catalog_name() const { return port_entry(name, role); }
+  /// That of the port without more room.
+  std::string_view plain_name() const noexcept { return grows.empty() ? name : grows; }
 };
 
 /// Part that limits the commands of robots of a kind. A kind without such a part: one that allows nothing.
@@ -321,6 +325,7 @@ const PortType& port_type() {
       t.merge = [](void* real, const void* virt) { static_cast<T*>(real)->merge(*static_cast<const T*>(virt)); };
     }
     if constexpr (ActuatorPort<T>) detail::fill_limits<T>(t);
+    if constexpr (requires { T::kGrows; }) t.grows = T::kGrows;
     return t;
   }();
   return type;

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "hal/elementary.hpp"
+#include "hal/open_params.hpp"
 
 namespace tandem::hal {
 namespace {
@@ -28,7 +29,9 @@ struct Erased {
 /// Collects the names of what robots' elements may say, and finds what cannot be told apart.
 class AttributeNames final : public ParamVisitor {
  public:
-  void visit(const Param& param) override { add(param.name); }
+  void visit(const Param& param) override {
+    if (!is_no_attribute(param.name)) add(param.name);
+  }
 
   std::string flaw;
 
@@ -93,6 +96,11 @@ void DifferentialDrive::describe(ParamVisitor& v) {
   v.text("source", source, "Where these figures come from.");
 }
 
+void DifferentialDrive::attributes(ParamVisitor& v) {
+  v.number("max_speed", max_speed_m_s, unit::m_s, {1e-6, 1000.0},
+           "Limit of a wheel's speed, at its rim; 100 m/s or more: none.");
+}
+
 void Quadrotor::describe(ParamVisitor& v) {
   v.number("max_speed", max_speed_m_s, unit::m_s, {1e-6, 1000.0}, "In any direction.");
   v.number("max_acceleration", max_acceleration_m_s2, unit::m_s2, kAboveZero,
@@ -119,6 +127,7 @@ void AnyPart::attributes(ParamVisitor& v) {
 }
 
 void RobotKind::attributes(ParamVisitor& v) {
+  if (auto* const wheels = std::get_if<DifferentialDrive>(&locomotion)) wheels->attributes(v);
   for (AnyPart& part : parts_) part.attributes(v);
 }
 

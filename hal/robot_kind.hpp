@@ -80,6 +80,7 @@ struct Body {
 struct DifferentialDrive {
   static constexpr std::string_view kName = "differential_drive";
   static constexpr std::string_view kDoc = "Drives on two wheels beside each other.";
+  static constexpr double kNoLimit_m_s = 100.0;  ///< a `max_speed_m_s` that stands for none
   double wheel_radius_m = 0.0;
   double wheel_base_m = 0.0;   ///< distance between the two wheels' contact points
   double max_speed_m_s = 0.0;  ///< of a wheel, at its rim
@@ -87,6 +88,9 @@ struct DifferentialDrive {
   double torque_Nm = 0.0;      ///< that they can turn the body with
   std::string source = {};
   void describe(ParamVisitor& v);
+  /// What the element of a robot may say otherwise.
+  void attributes(ParamVisitor& v);
+  bool limited() const noexcept { return max_speed_m_s < kNoLimit_m_s; }
 };
 
 /// Flies on four rotors whose thrusts follow what is commanded with a lag [Mellinger and Kumar 2011, "Minimum snap
@@ -218,6 +222,19 @@ const PartType& part_type() {
   static constexpr PartType type{P::kName, P::kDoc, [] { return AnyPart(P{}); }};
   return type;
 }
+
+/// A part that robots of a kind may be built with besides. ARGoS files mean it by listing its device.
+struct ExtraPart {
+  static constexpr std::string_view kCategory = "extra_part";
+  using Crosses = Layouts<AnyPart, detail::PartTable>;
+  std::string_view robot, device;
+  AnyPart (*make)() = nullptr;
+
+  std::string catalog_name() const { return entry(robot, device); }
+  static std::string entry(std::string_view robot, std::string_view device) {
+    return std::string(robot) + " " + std::string(device);
+  }
+};
 
 /// All that is known of a kind of robot. Constant while it is in a catalog: devices, bridges and controllers keep
 /// pointers into it.

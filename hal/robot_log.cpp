@@ -12,7 +12,10 @@ void RobotLog::write(Severity severity, std::string_view text) noexcept {
   // A bucket that is full at free_ns_ [generic cell rate algorithm, ITU-T I.371].
   if (free_ns_ > now_ns + kBurst * kRefill_ns) free_ns_ = now_ns;  // the run went back
   if (free_ns_ > now_ns + (kBurst - 1) * kRefill_ns) {
-    ++left_out_;
+    if (sink_->keeps())
+      sink_->keep(robot_, severity, shortened(text));
+    else
+      ++left_out_;
     return;
   }
   free_ns_ = std::max(free_ns_, now_ns) + kRefill_ns;

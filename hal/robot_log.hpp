@@ -10,9 +10,9 @@
 
 namespace tandem::hal {
 
-/// Takes messages of one robot to the run's log, kBurst at once and then one each kRefill_ns of the run; of the others
-/// their number is told with the next. A value, to be kept by the controller. Take it from Robot::log(); the default
-/// one drops everything.
+/// Takes messages of one robot to the run's log, kBurst at once and then one each kRefill_ns of the run. The others go
+/// where all are kept, if anywhere; else their number is told with the next. A value, to be kept by the controller.
+/// Take it from Robot::log(); the default one drops everything.
 class RobotLog {
  public:
   static constexpr int kBurst = 10;
@@ -27,6 +27,10 @@ class RobotLog {
     /// threads at once, for different robots.
     virtual void write(std::uint32_t robot, Severity severity, std::string_view text,
                        std::uint32_t left_out) noexcept = 0;
+    /// Whether what is too much is kept, by `keep`.
+    virtual bool keeps() const noexcept { return false; }
+    /// Takes such a message; as `write`.
+    virtual void keep(std::uint32_t /*robot*/, Severity /*severity*/, std::string_view /*text*/) noexcept {}
   };
 
   RobotLog() = default;

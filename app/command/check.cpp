@@ -22,15 +22,16 @@ int check(const CheckOptions& options) {
   }
   if (!open_plugins(loader, options.plugins)) return kBadInput;
   if (const auto other = check_other_file(options.experiment, loader.catalog())) return *other;
-  const auto scenario = read_or_complain(loader, {}, options.experiment, options.overrides);
+  const auto scenario = read_or_complain(loader, {}, options.experiment, options.overrides, options.strict);
   if (!scenario) return kBadInput;
   // What only making the world can tell: libraries, devices, parameters, places.
   core::Problems problems;
   core::WorldOptions world_options;
   if (!scenario->seed) world_options.seed = 1;
   const auto world = core::World::make(*scenario, loader, world_options, problems);
+  if (options.strict) core::refuse_ignored(problems);
   print_problems(problems);
-  if (world == nullptr) return kBadInput;
+  if (world == nullptr || core::has_errors(problems)) return kBadInput;
   for (const RealSideType* real : loader.catalog().all<RealSideType>()) {
     for (const std::string& outlook : real->outlooks(*scenario, loader.catalog())) fmt::print("{}\n", outlook);
   }

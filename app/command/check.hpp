@@ -12,10 +12,12 @@ struct CheckOptions {
   Libraries plugins;
   std::string experiment;
   std::vector<std::string> overrides;
+  bool strict = false;  ///< what an ARGoS file says and nothing reads is an error, too
 
   void describe(hal::CommandLine& line) {
     line.word("experiment", experiment, "The experiment file (.xml)").required().file();
     line.option("--set", overrides, "Change the experiment first: path=value").repeatable();
+    line.flag("--strict", strict, "In an ARGoS file (<argos-configuration>), too, what nothing reads is an error");
     describe_plugins(line, plugins);
   }
 };

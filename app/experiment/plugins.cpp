@@ -58,8 +58,8 @@ void open_plugin_folders(hal::PluginLoader& loader) {
   }
 }
 
-ExperimentReading::ExperimentReading(hal::PluginLoader& loader, const std::vector<std::string>& plugins)
-    : loader_(loader) {
+ExperimentReading::ExperimentReading(hal::PluginLoader& loader, const std::vector<std::string>& plugins, bool strict)
+    : loader_(loader), strict_(strict) {
   for (const std::string& library : plugins) libraries_.push_back({library});
 }
 
@@ -145,6 +145,7 @@ std::optional<core::Scenario> ExperimentReading::read() {
     for (const RealSideType* real : loader_.catalog().all<RealSideType>())
       real->check(*scenario, loader_.catalog(), problems);
   }
+  if (strict_) core::refuse_ignored(problems);
   print_problems(problems);
   if (core::has_errors(problems)) return std::nullopt;
   return scenario;
@@ -180,8 +181,9 @@ std::unique_ptr<KindsOfFile> kinds_of_settings(const std::string& text, const st
 }
 
 std::optional<core::Scenario> read_or_complain(hal::PluginLoader& loader, const std::vector<std::string>& plugins,
-                                               const std::string& path, const std::vector<std::string>& overrides) {
-  ExperimentReading reading(loader, plugins);
+                                               const std::string& path, const std::vector<std::string>& overrides,
+                                               bool strict) {
+  ExperimentReading reading(loader, plugins, strict);
   return reading.open(path, overrides) ? reading.read() : std::nullopt;
 }
 

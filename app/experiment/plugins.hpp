@@ -36,7 +36,8 @@ std::ptrdiff_t thread_count();
 class ExperimentReading {
  public:
   /// `loader` must outlive this, and all that is made with its catalog.
-  ExperimentReading(hal::PluginLoader& loader, const std::vector<std::string>& plugins);
+  /// `strict`: what is ignored in ARGoS files is an error.
+  ExperimentReading(hal::PluginLoader& loader, const std::vector<std::string>& plugins, bool strict = false);
 
   /// Reads the file, judges all plug-ins, and opens those with what stops real robots: what a guardian needs. Starts no
   /// thread. False: complained.
@@ -62,6 +63,7 @@ class ExperimentReading {
   void complain_about(const Library& library, const std::string& message) const;
 
   hal::PluginLoader& loader_;
+  bool strict_;
   std::vector<Library> libraries_;
   std::string path_;
   std::optional<core::ExperimentFile> file_;
@@ -78,7 +80,8 @@ std::unique_ptr<KindsOfFile> kinds_of_settings(const std::string& text, const st
 
 /// All of it, for commands without real robots.
 std::optional<core::Scenario> read_or_complain(hal::PluginLoader& loader, const std::vector<std::string>& plugins,
-                                               const std::string& path, const std::vector<std::string>& overrides);
+                                               const std::string& path, const std::vector<std::string>& overrides,
+                                               bool strict = false);
 
 /// The same of settings that a record or a report kept.
 std::optional<core::Scenario> settings_or_complain(hal::PluginLoader& loader, const std::vector<std::string>& plugins,

@@ -34,6 +34,18 @@ hal::Log RunLog::robots() {
   return hal::Log([this](hal::Severity severity, std::string_view text) { write(severity, text, true); });
 }
 
+hal::Log RunLog::excess() {
+  if (!file_) return {};
+  return hal::Log([this](hal::Severity severity, std::string_view text) { write_excess(severity, text); });
+}
+
+void RunLog::write_excess(hal::Severity severity, std::string_view text) {
+  const std::string entry = hal::printable_entry(hal::shortened(text));
+  const std::lock_guard hold(lock_);
+  ++excess_;
+  write_file(severity, entry);
+}
+
 void RunLog::tell_also(std::function<void(std::string_view)> listener) {
   const std::lock_guard hold(lock_);
   listener_ = std::move(listener);
@@ -102,7 +114,7 @@ hal::Status RunLog::close() {
   end_robots();
   const std::lock_guard hold(lock_);
   const std::size_t left_out =
-      robot_lines_.left_out() + (count_ > kShown ? static_cast<std::size_t>(count_ - kShown) : 0);
+      robot_lines_.left_out() + excess_ + (count_ > kShown ? static_cast<std::size_t>(count_ - kShown) : 0);
   if (left_out > 0)
     say(fmt::format("{} more messages{}", left_out, file_ ? " are in " + file_->path() : "; --log FILE keeps all"));
   if (!file_ || !written_.ok()) return written_;

@@ -26,6 +26,9 @@ class RunLog {
   hal::Log log();
   /// For what is about real robots: never silent on the terminal, whatever else was said.
   hal::Log robots();
+  /// For what is too much for people: the file gets it alone, and it counts among what the terminal did not get.
+  /// Without a file it drops everything.
+  hal::Log excess();
   /// Takes an entry into the file alone.
   void keep(std::string_view text);
   /// The real robots as they are now: to be called often. On a terminal the list stands under everything else, without
@@ -49,6 +52,7 @@ class RunLog {
 
  private:
   void write(hal::Severity severity, std::string_view text, bool about_robots);
+  void write_excess(hal::Severity severity, std::string_view text);
   void write_file(hal::Severity severity, std::string_view entry);
   void tell_robots(bool all);
 
@@ -57,6 +61,7 @@ class RunLog {
   std::optional<hal::OutputFile> file_;
   hal::Status written_;
   int count_ = 0, late_errors_ = 0;
+  std::size_t excess_ = 0;
   bool over_ = false;
   RobotLines robot_lines_;
   RollTeller roll_teller_;

@@ -146,6 +146,7 @@ struct Pictures::Impl {
   }
   std::uint64_t floor_mark = 0;
   std::function<double(double, double)> floor;  // kept, of that mark
+  std::function<hal::Rgb(double, double)> floor_color;
 
   // Between the thread that hands over and the one that draws.
   std::mutex mutex;
@@ -318,9 +319,11 @@ void Pictures::draw(std::int64_t ticks_done, core::Drawing drawing) {
     if (!p.floor || p.floor_mark != drawing.floor_mark) {
       core::keep_floor(drawing, p.look);
       p.floor = drawing.floor;
+      p.floor_color = drawing.floor_color;
       p.floor_mark = drawing.floor_mark;
     }
     drawing.floor = p.floor;
+    drawing.floor_color = p.floor_color;
   }
   const std::size_t bytes = bytes_of(drawing);
   const bool frame = p.wants_frame(ticks_done);

@@ -23,18 +23,7 @@ class ListedRobot final : public hal::Robot, public hal::DeviceList {
   std::string_view id() const noexcept override { return robot_.id(); }
   const hal::RobotKind& kind() const noexcept override { return robot_.kind(); }
   std::uint64_t run_seed() const noexcept override { return robot_.run_seed(); }
-  std::vector<hal::ListedDevice> devices() const override {
-    std::vector<hal::ListedDevice> all;
-    const auto add = [&](const std::vector<core::DeviceChoice>& choices, hal::Role role) {
-      for (const core::DeviceChoice& choice : choices) {
-        const auto* const port = catalog_.find<hal::PortType>(hal::port_entry(choice.device, role));
-        if (port != nullptr) all.push_back({port, choice.options.name});
-      }
-    };
-    add(config_.sensors, hal::Role::Sensor);
-    add(config_.actuators, hal::Role::Actuator);
-    return all;
-  }
+  std::vector<hal::ListedDevice> devices() const override { return core::listed_devices(config_, catalog_, true); }
   void* port(const hal::PortType& type) override { return take(type); }
 
   /// Told what the controller publishes, which is unused otherwise.

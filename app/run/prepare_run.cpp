@@ -24,7 +24,7 @@ int open_resumed(RunPlan& plan) {
   const std::string name = hal::text_of(hal::object_of(about, "file"), "file");
   const std::string settings = hal::text_of(about, "settings");
   if (settings.empty()) return complain(kBadInput, "checkpoint '" + options.resume + "' has no experiment");
-  return plan.reading.open_text(settings, name, options.overrides) ? kDone : kBadInput;
+  return plan.reading.open_text(settings, name, options.all_overrides()) ? kDone : kBadInput;
 }
 
 /// Whether the run can go on from it with the program and files that there are.
@@ -80,12 +80,12 @@ int open_experiment(RunPlan& plan) {
     return code == kDone ? make_side(plan) : code;
   }
   if (!plan.replays() && options.hub_faults.empty())
-    return plan.reading.open(options.experiment, options.overrides) ? make_side(plan) : kBadInput;
+    return plan.reading.open(options.experiment, options.all_overrides()) ? make_side(plan) : kBadInput;
   if (const hal::Status real = need_module(plan.loader, "real"); !real.ok())
     return complain(kBadInput, real.error().message);
   if (const int code = make_side(plan); code != kDone) return code;
   const bool opened =
-      plan.replays() ? plan.side->open(plan.reading) : plan.reading.open(options.experiment, options.overrides);
+      plan.replays() ? plan.side->open(plan.reading) : plan.reading.open(options.experiment, options.all_overrides());
   return opened ? kDone : kBadInput;
 }
 
@@ -143,6 +143,7 @@ int make_world(RunPlan& plan) {
   if (plan.resumed) world_options.places_seed = hal::count_of(plan.resumed->about, "seed");
   world_options.threads = options.threads;
   world_options.log = plan.world_log;
+  world_options.excess_log = plan.log.excess();
   core::Problems problems;
   plan.made = core::World::make(*plan.scenario, plan.loader, world_options, problems);
   print_problems(problems);

@@ -27,7 +27,7 @@ namespace tandem::controllers::lua {
 namespace {
 
 using hal::QuadrotorPosition, hal::QuadrotorSpeed, hal::ScannerDrive, hal::TurretDrive, hal::PanTiltDrive;
-using hal::WheelSpeeds, hal::RangeAndBearingSend, hal::GripperDrive;
+using hal::WheelSpeeds, hal::GripperDrive;
 
 using hal::argos::kM_per_cm;
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
@@ -163,19 +163,24 @@ std::size_t payload_of(const Interpreter& in) {
 
 std::uint8_t byte_at(lua_State* L, int index, int argument) {
   const double value = lua_type(L, index) == LUA_TNUMBER ? lua_tonumber(L, index) : -1.0;
+  if (Interpreter::of(L).script().argos && lua_type(L, index) == LUA_TNUMBER && std::isfinite(value)) {
+    const double wrapped = std::fmod(std::trunc(value), 256.0);
+    return static_cast<std::uint8_t>(wrapped < 0.0 ? wrapped + 256.0 : wrapped);
+  }
   if (!(value >= 0.0 && value < 256.0)) luaL_argerror(L, argument, "a byte is a number from 0 to 255");
   return static_cast<std::uint8_t>(value);
 }
 
+template <class Port>
 int set_data(lua_State* L) {
-  auto& message = port_of<hal::RangeAndBearingSend>(L);
+  auto& message = port_of<Port>(L);
   const std::size_t size = payload_of(Interpreter::of(L));
   if (lua_gettop(L) == 1) {
     luaL_checktype(L, 1, LUA_TTABLE);
     if (static_cast<std::size_t>(luaL_len(L, 1)) != size)
       return luaL_error(L, "robot.range_and_bearing.set_data(array) expects an array of %d numbers",
                         static_cast<int>(size));
-    std::array<std::uint8_t, hal::kRabPayloadMax> bytes{};
+    decltype(message.payload) bytes{};
     for (std::size_t i = 0; i < size; ++i) {
       lua_geti(L, 1, static_cast<lua_Integer>(i) + 1);
       bytes[i] = byte_at(L, -1, 1);
@@ -194,18 +199,21 @@ int set_data(lua_State* L) {
   return 0;
 }
 
-constexpr std::array kSending = {DeviceFunction{"set_data", &set_data},
-                                 takes<RangeAndBearingSend>("clear_data", "robot.range_and_bearing.clear_data()", 0,
-                                                            [](auto& d, auto*) { d.payload.fill(0); })};
+template <class Port>
+constexpr std::array kSending = {
+    DeviceFunction{"set_data", &set_data<Port>},
+    takes<Port>("clear_data", "robot.range_and_bearing.clear_data()", 0, [](auto& d, auto*) { d.payload.fill(0); })};
 
+template <class Port>
 void fill_hearing(lua_State* L, Interpreter& in, std::size_t device, const void* port) {
-  const auto& heard = *static_cast<const hal::RangeAndBearing*>(port);
+  const auto& heard = *static_cast<const Port*>(port);
+  in.tell_dropped(heard.dropped, "messages");
   fill_list(L, in, device, heard.count, [&](std::size_t i) {
     lua_createtable(L, 0, 4);
     set_number(L, "range", static_cast<double>(heard.range_m[i]) / kM_per_cm);
     set_number(L, "horizontal_bearing", static_cast<double>(heard.bearing_rad[i]));
     set_number(L, "vertical_bearing", static_cast<double>(heard.elevation_rad[i]));
-    const std::size_t size = std::min<std::size_t>(heard.size[i], hal::kRabPayloadMax);
+    const std::size_t size = std::min<std::size_t>(heard.size[i], Port::kPayload);
     lua_createtable(L, static_cast<int>(size), 0);
     for (std::size_t k = 0; k < size; ++k) {
       lua_pushinteger(L, heard.message(i)[k]);
@@ -297,8 +305,10 @@ void set_color(lua_State* L, hal::Rgb color) {
   lua_setfield(L, -2, "color");
 }
 
+template <class Port>
 void fill_omni(lua_State* L, Interpreter& in, std::size_t device, const void* port) {
-  const auto& camera = *static_cast<const hal::OmnidirectionalCamera*>(port);
+  const auto& camera = *static_cast<const Port*>(port);
+  in.tell_dropped(camera.dropped, "blobs");
   fill_list(L, in, device, in.actor().omni_on ? camera.count : 0, [&](std::size_t i) {
     lua_createtable(L, 0, 3);
     set_number(L, "distance", static_cast<double>(camera.distance_m[i]) / kM_per_cm);
@@ -307,8 +317,10 @@ void fill_omni(lua_State* L, Interpreter& in, std::size_t device, const void* po
   });
 }
 
+template <class Port>
 void fill_perspective(lua_State* L, Interpreter& in, std::size_t device, const void* port) {
-  const auto& camera = *static_cast<const hal::PerspectiveCamera*>(port);
+  const auto& camera = *static_cast<const Port*>(port);
+  in.tell_dropped(camera.dropped, "blobs");
   fill_list(L, in, device, in.actor().perspective_on ? camera.count : 0, [&](std::size_t i) {
     lua_createtable(L, 0, 3);
     set_number(L, "x", static_cast<double>(camera.x_px[i]));
@@ -457,6 +469,15 @@ DeviceApi api(const char* table, std::span<const DeviceFunction> functions, Fill
   return {type.role, Port::kName, table, type.layout, functions, fill, open_ring};
 }
 
+template <class Port>
+DeviceApi omni_api() {
+  return api<Port>("colored_blob_omnidirectional_camera", kCamera<Port, &Actor::omni_on>, &fill_omni<Port>);
+}
+template <class Port>
+DeviceApi perspective_api() {
+  return api<Port>("colored_blob_perspective_camera", kCamera<Port, &Actor::perspective_on>, &fill_perspective<Port>);
+}
+
 }  // namespace
 
 void open_functions(lua_State* L, const DeviceApi& api, std::size_t device) {
@@ -470,32 +491,33 @@ void open_functions(lua_State* L, const DeviceApi& api, std::size_t device) {
 
 std::span<const DeviceApi> device_apis() {
   using namespace hal;
-  static const std::array all = {
-      api<WheelSpeeds>("wheels", kWheels),
-      api<WheelEncoders>("wheels", {}, &fill_wheels),
-      api<Proximity>("proximity", {}, &fill_proximity, &open_proximity),
-      api<Light>("light", {}, &fill_light, &open_light),
-      api<Ground>("ground", {}, &fill_ground),
-      api<BaseGround>("base_ground", {}, &fill_ground_ring<BaseGroundPart>),
-      api<MotorGround>("motor_ground", {}, &fill_ground_ring<MotorGroundPart>),
-      api<RangeAndBearing>("range_and_bearing", {}, &fill_hearing),
-      api<RangeAndBearingSend>("range_and_bearing", kSending),
-      api<RingLeds>("leds", kLeds<RingLeds, LedsPart>),
-      api<UpperRingLeds>("upper_leds", kLeds<UpperRingLeds, UpperLedsPart>),
-      api<OmnidirectionalCamera>("colored_blob_omnidirectional_camera", kCamera<OmnidirectionalCamera, &Actor::omni_on>,
-                                 &fill_omni),
-      api<PerspectiveCamera>("colored_blob_perspective_camera", kCamera<PerspectiveCamera, &Actor::perspective_on>,
-                             &fill_perspective),
-      api<ScannerDrive>("distance_scanner", kScanner),
-      api<DistanceScanner>("distance_scanner", {}, &fill_scanner),
-      api<TurretDrive>("turret", kTurret),
-      api<TurretEncoder>("turret", {}, &fill_turret),
-      api<GripperDrive>("gripper", kGripper),
-      api<QuadrotorPosition>("quadrotor", kFlightTo),
-      api<QuadrotorSpeed>("quadrotor", kFlightWith),
-      api<PanTiltDrive>("pan_tilt_camera", kHead),
-      api<Positioning>("positioning", {}, &fill_positioning),
-      api<Battery>("battery", {}, &fill_battery)};
+  static const std::array all = {api<WheelSpeeds>("wheels", kWheels),
+                                 api<WheelEncoders>("wheels", {}, &fill_wheels),
+                                 api<Proximity>("proximity", {}, &fill_proximity, &open_proximity),
+                                 api<Light>("light", {}, &fill_light, &open_light),
+                                 api<Ground>("ground", {}, &fill_ground),
+                                 api<BaseGround>("base_ground", {}, &fill_ground_ring<BaseGroundPart>),
+                                 api<MotorGround>("motor_ground", {}, &fill_ground_ring<MotorGroundPart>),
+                                 api<RangeAndBearing>("range_and_bearing", {}, &fill_hearing<RangeAndBearing>),
+                                 api<RangeAndBearingSend>("range_and_bearing", kSending<RangeAndBearingSend>),
+                                 api<RangeAndBearingMany>("range_and_bearing", {}, &fill_hearing<RangeAndBearingMany>),
+                                 api<RangeAndBearingLongSend>("range_and_bearing", kSending<RangeAndBearingLongSend>),
+                                 api<RingLeds>("leds", kLeds<RingLeds, LedsPart>),
+                                 api<UpperRingLeds>("upper_leds", kLeds<UpperRingLeds, UpperLedsPart>),
+                                 omni_api<OmnidirectionalCamera>(),
+                                 omni_api<OmnidirectionalCameraMany>(),
+                                 perspective_api<PerspectiveCamera>(),
+                                 perspective_api<PerspectiveCameraMany>(),
+                                 api<ScannerDrive>("distance_scanner", kScanner),
+                                 api<DistanceScanner>("distance_scanner", {}, &fill_scanner),
+                                 api<TurretDrive>("turret", kTurret),
+                                 api<TurretEncoder>("turret", {}, &fill_turret),
+                                 api<GripperDrive>("gripper", kGripper),
+                                 api<QuadrotorPosition>("quadrotor", kFlightTo),
+                                 api<QuadrotorSpeed>("quadrotor", kFlightWith),
+                                 api<PanTiltDrive>("pan_tilt_camera", kHead),
+                                 api<Positioning>("positioning", {}, &fill_positioning),
+                                 api<Battery>("battery", {}, &fill_battery)};
   return all;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "controllers/lua_controller/copies.hpp"
 #include "controllers/lua_controller/devices.hpp"
@@ -60,6 +61,12 @@ void Interpreter::fill(lua_State* L) {
   for (const std::size_t i : filled_) devices_[i].api->fill(L, *this, i, actor_->ports[i]);
   filling_ = false;
   memory_.set_filling(false);
+}
+
+void Interpreter::tell_dropped(std::uint32_t dropped, const char* what) {
+  if (dropped == 0 || std::exchange(dropped_told_, true)) return;
+  actor_->log.warning(std::to_string(dropped) + " " + what +
+                      " were dropped, the farthest: more than its port keeps; from here on nothing is said of that");
 }
 
 /// Calls the function below its arguments, on the top, as the present robot's.
@@ -394,6 +401,30 @@ bool Interpreter::call(Actor& actor, Variables& variables, const char* function)
       },
       &asked);
   return asked.found;
+}
+
+bool Interpreter::finalize_last(Actor& actor, Variables& variables) {
+  const Call call(*this);
+  actor_ = &actor;
+  variables_ = &variables;
+  bool any = false;
+  protect(
+      [](lua_State* L) {
+        of(L).push_own(L);
+        if (lua_getfield(L, -1, "finalized") != LUA_TTABLE) return 0;
+        const auto last = static_cast<lua_Integer>(lua_rawlen(L, -1));
+        if (last == 0) return 0;
+        *static_cast<bool*>(lua_touserdata(L, 1)) = true;
+        lua_rawgeti(L, -1, last);
+        lua_pushnil(L);
+        lua_rawseti(L, -3, last);
+        if (luaL_getmetafield(L, -1, "__gc") != LUA_TFUNCTION) return 0;
+        lua_insert(L, -2);
+        of(L).run(L, 1);
+        return 0;
+      },
+      &any);
+  return any;
 }
 
 int Interpreter::protected_step(lua_State* L) {

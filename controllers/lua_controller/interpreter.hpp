@@ -33,7 +33,7 @@ struct DeviceApi;  // devices.hpp
 struct Script {
   std::string path;
   std::vector<hal::SourceFile> files;  ///< itself, and modules that it names
-  bool strict = false;
+  bool strict = false, argos = false, allow_io = false;
   std::int64_t most_instructions = 0;  ///< of one call: Steps
   std::uint64_t most_memory =
       0;  ///< bytes that a robot keeps from call to call; a call may take kMemoryOfCall times as much
@@ -109,6 +109,9 @@ class Interpreter {
   /// Calls a function of the script without arguments; false where it has none. @throws std::runtime_error
   bool call(Actor& actor, Variables& variables, const char* function);
   bool has(Variables& variables, const char* function);
+  /// Calls `__gc` of the robot's last object that has such a metatable, once; false: there is none. @throws
+  /// std::runtime_error
+  bool finalize_last(Actor& actor, Variables& variables);
   void end(Variables& variables) noexcept;
 
   /// One after the other, `next(job, …)` names a robot and its variables, until it says null; their `step` is called.
@@ -132,6 +135,8 @@ class Interpreter {
   Actor& actor() noexcept { return *actor_; }
   Device& device(std::size_t index) noexcept { return devices_[index]; }
   bool filling() const noexcept { return filling_; }
+  /// Warns, once, where a port had no room for `dropped` things.
+  void tell_dropped(std::uint32_t dropped, const char* what);
   /// Pushes the table of what is the present robot's own.
   void push_own(lua_State* state) noexcept { lua_rawgeti(state, LUA_REGISTRYINDEX, variables_->own); }
   void push_globals(lua_State* state) noexcept { lua_rawgeti(state, LUA_REGISTRYINDEX, variables_->globals); }
@@ -213,7 +218,7 @@ class Interpreter {
 
   Actor* actor_ = nullptr;
   Variables* variables_ = nullptr;
-  bool filling_ = false, on_main_ = true;
+  bool filling_ = false, on_main_ = true, dropped_told_ = false;
   // Tables of originals and of what all have: libraries, parts of `robot`, functions; what else is no robot's state.
   int chunk_ = LUA_NOREF, globals_meta_ = LUA_NOREF, libraries_ = LUA_NOREF, parts_ = LUA_NOREF, shared_ = LUA_NOREF,
       direct_ = LUA_NOREF, common_ = LUA_NOREF, strings_ = LUA_NOREF;

@@ -1,5 +1,6 @@
 // The libraries that scripts have. What would differ between runs or machines is replaced or left out: the order of
-// pairs, elementary functions, random numbers, clocks, addresses in texts, files. What can take long counts its steps.
+// pairs, elementary functions, random numbers, addresses in texts; clocks and files are in outside.cpp. What can take
+// long counts its steps.
 #include <cstdio>
 #include <cstring>
 #include <limits>
@@ -8,7 +9,6 @@
 #include "controllers/lua_controller/devices.hpp"
 #include "controllers/lua_controller/own_tables.hpp"
 #include "controllers/lua_controller/patterns.hpp"
-#include "hal/device/body_sensors.hpp"
 
 namespace tandem::controllers::lua {
 namespace {
@@ -70,18 +70,36 @@ int print(lua_State* L) {
 
 // --- what would make runs differ ---
 
+/// Notes the table at 1, whose __gc is called at the end of its robot: by number, and by itself so that it is there
+/// once.
+void note_finalized(lua_State* L) {
+  Interpreter::of(L).push_own(L);
+  if (lua_getfield(L, -1, "finalized") != LUA_TTABLE) {
+    lua_pop(L, 1);
+    lua_newtable(L);
+    lua_pushvalue(L, -1);
+    lua_setfield(L, -3, "finalized");
+  }
+  lua_pushvalue(L, 1);
+  if (lua_rawget(L, -2) != LUA_TNIL) return;
+  lua_pop(L, 1);
+  const auto number = static_cast<lua_Integer>(lua_rawlen(L, -1)) + 1;
+  lua_pushvalue(L, 1);
+  lua_rawseti(L, -2, number);
+  lua_pushvalue(L, 1);
+  lua_pushboolean(L, 1);
+  lua_rawset(L, -3);
+}
+
 int set_metatable(lua_State* L) {
   luaL_checktype(L, 1, LUA_TTABLE);
   luaL_argexpected(L, lua_isnoneornil(L, 2) || lua_istable(L, 2), 2, "nil or table");
   lua_settop(L, 2);
   if (luaL_getmetafield(L, 1, "__metatable") != LUA_TNIL) return luaL_error(L, "cannot change a protected metatable");
+  lua_settop(L, 2);
   if (lua_istable(L, 2)) {
-    for (const char* const field : {"__gc", "__mode"}) {
-      lua_pushstring(L, field);
-      if (lua_rawget(L, 2) != LUA_TNIL)
-        return luaL_error(L, "a metatable with %s: when memory is collected is not the same in every run", field);
-      lua_pop(L, 1);
-    }
+    lua_pushliteral(L, "__gc");
+    if (lua_rawget(L, 2) != LUA_TNIL) note_finalized(L);
   }
   lua_settop(L, 2);
   lua_setmetatable(L, 1);
@@ -90,30 +108,6 @@ int set_metatable(lua_State* L) {
 
 int collect_garbage(lua_State* L) {
   lua_pushinteger(L, 0);
-  return 1;
-}
-
-/// The clock's port, where the configuration lists it.
-const hal::Clock* clock_of(lua_State* L) {
-  Interpreter& in = Interpreter::of(L);
-  for (std::size_t i = 0; i < in.devices().size(); ++i) {
-    if (in.devices()[i].type->layout == hal::port_type<hal::Clock>().layout &&
-        in.devices()[i].type->name == hal::Clock::kName)
-      return static_cast<const hal::Clock*>(in.actor().ports[i]);
-  }
-  return nullptr;
-}
-
-int os_clock(lua_State* L) {
-  const hal::Clock* const clock = clock_of(L);
-  lua_pushnumber(L, clock == nullptr ? 0.0 : hal::to_seconds(clock->now_ns));
-  return 1;
-}
-
-int os_time(lua_State* L) {
-  if (!lua_isnoneornil(L, 1)) return luaL_error(L, "os.time takes no date here: it is the time of the run");
-  const hal::Clock* const clock = clock_of(L);
-  lua_pushinteger(L, clock == nullptr ? 0 : clock->now_ns / hal::kNsPerSecond);
   return 1;
 }
 
@@ -149,113 +143,6 @@ int raw_get(lua_State* L) {
 int raw_length(lua_State* L) {
   luaL_argexpected(L, lua_istable(L, 1) || lua_type(L, 1) == LUA_TSTRING, 1, "table or string");
   lua_pushinteger(L, is_late(L, 1) ? luaL_len(L, 1) : static_cast<lua_Integer>(lua_rawlen(L, 1)));
-  return 1;
-}
-
-int left_out(lua_State* L) {  // upvalue: the library's name
-  push_text(L, 2);
-  return luaL_error(L, "%s.%s is not there: what a robot does depends on its sensors and on its random numbers alone",
-                    lua_tostring(L, lua_upvalueindex(1)), lua_tostring(L, -1));
-}
-
-// --- code ---
-
-/// Pushes the chunk of a file, as compiled for all robots of the interpreter, or a message. Lua's errors leave no
-/// object of C++ behind: the texts go to Lua first.
-enum class Loaded { Yes, Missing, Wrong };
-Loaded push_file(lua_State* L, const char* name) {
-  lua_getfield(L, LUA_REGISTRYINDEX, "tandem.files");
-  if (lua_getfield(L, -1, name) == LUA_TFUNCTION) {
-    lua_remove(L, -2);
-    return Loaded::Yes;
-  }
-  lua_pop(L, 1);
-  bool compiled = false;
-  bool found = false;
-  {
-    std::string path;
-    std::string text;
-    try {
-      found = Interpreter::of(L).script().read(name, path, text);
-      path.insert(0, "@");
-    } catch (const std::exception&) {
-      found = false;
-    }
-    if (found) compiled = Interpreter::of(L).compile_for_all(L, text, path.c_str(), name);
-  }
-  if (!found) {
-    lua_pop(L, 1);
-    return Loaded::Missing;
-  }
-  lua_remove(L, -2);
-  return compiled ? Loaded::Yes : Loaded::Wrong;
-}
-
-int require(lua_State* L) {
-  const char* const name = luaL_checkstring(L, 1);
-  lua_settop(L, 1);
-  Interpreter::of(L).push_own(L);
-  lua_getfield(L, 2, "loaded");  // 3
-  if (lua_getfield(L, 3, name) != LUA_TNIL) return 1;
-  for (const char* const library : {"math", "string", "table", "coroutine", "utf8", "os"}) {
-    if (std::strcmp(library, name) != 0) continue;
-    Interpreter::of(L).push_globals(L);
-    lua_getfield(L, -1, name);
-    return 1;
-  }
-  luaL_gsub(L, name, ".", "/");
-  Loaded loaded = Loaded::Missing;
-  for (const char* const end : {".lua", "/init.lua"}) {
-    lua_settop(L, 5);
-    loaded = push_file(L, lua_pushfstring(L, "%s%s", lua_tostring(L, 5), end));
-    if (loaded != Loaded::Missing) break;
-  }
-  if (loaded == Loaded::Missing)
-    return luaL_error(L,
-                      "require: there is no module '%s': neither %s.lua nor %s/init.lua lies beneath the folder of %s",
-                      name, lua_tostring(L, 5), lua_tostring(L, 5), Interpreter::of(L).script().path.c_str());
-  if (loaded == Loaded::Wrong) return lua_error(L);
-  Interpreter::of(L).push_globals(L);
-  lua_call(L, 1, 1);
-  if (lua_isnil(L, -1)) lua_pushboolean(L, 1);
-  lua_pushvalue(L, -1);
-  lua_setfield(L, 3, name);
-  return 1;
-}
-
-int do_file(lua_State* L) {
-  const char* const name = luaL_checkstring(L, 1);
-  lua_settop(L, 1);
-  switch (push_file(L, name)) {
-    case Loaded::Missing:
-      return luaL_error(L, "dofile: there is no file '%s' beneath the folder of %s", name,
-                        Interpreter::of(L).script().path.c_str());
-    case Loaded::Wrong:
-      return lua_error(L);
-    case Loaded::Yes:
-      break;
-  }
-  Interpreter::of(L).push_globals(L);
-  lua_call(L, 1, LUA_MULTRET);
-  return lua_gettop(L) - 1;
-}
-
-/// A text as a function: with the robot's globals, or the environment that is given.
-int load(lua_State* L) {
-  std::size_t size = 0;
-  const char* const text = luaL_checklstring(L, 1, &size);
-  const char* const name = luaL_optstring(L, 2, "=(load)");
-  lua_settop(L, 4);
-  if (luaL_loadbufferx(L, text, size, name, "t") != LUA_OK) {
-    lua_pushnil(L);
-    lua_insert(L, -2);
-    return 2;
-  }
-  if (lua_isnil(L, 4))
-    Interpreter::of(L).push_globals(L);
-  else
-    lua_pushvalue(L, 4);
-  lua_setupvalue(L, -2, 1);
   return 1;
 }
 
@@ -456,17 +343,12 @@ constexpr luaL_Reg kBase[] = {{"tostring", &tostring},
                               {"xpcall", &xpcall},
                               {"setmetatable", &set_metatable},
                               {"collectgarbage", &collect_garbage},
-                              {"require", &require},
-                              {"dofile", &do_file},
-                              {"load", &load},
-                              {"loadstring", &load},
                               {"log", &log_info},
                               {"logerr", &log_error},
                               {"print", &print},
                               {nullptr, nullptr}};
 constexpr luaL_Reg kCoroutine[] = {{"resume", &coroutine_resume}, {"wrap", &coroutine_wrap}, {nullptr, nullptr}};
 constexpr luaL_Reg kDebug[] = {{"traceback", &traceback}, {nullptr, nullptr}};
-constexpr luaL_Reg kOs[] = {{"clock", &os_clock}, {"time", &os_time}, {nullptr, nullptr}};
 
 void open_base(lua_State* L, int all) {
   luaL_requiref(L, "_G", luaopen_base, 0);
@@ -477,6 +359,7 @@ void open_base(lua_State* L, int all) {
   }
   lua_settop(L, all);
   luaL_setfuncs(L, kBase, 0);
+  open_code(L);
   open_order(L);
 }
 
@@ -505,28 +388,10 @@ void open_table(lua_State* L, int all) {
   lua_setfield(L, all, "unpack");
 }
 
-/// What is left of a library that reaches outside; what it lacks says why where `named`.
-void open_rest(lua_State* L, int all, const char* name, const luaL_Reg* functions, bool named) {
-  lua_newtable(L);
-  if (functions != nullptr) luaL_setfuncs(L, functions, 0);
-  lua_pushvalue(L, -1);
-  lua_setfield(L, all, name);
-  if (!named) return;
-  lua_newtable(L);
-  lua_pushstring(L, name);
-  lua_pushcclosure(L, &left_out, 1);
-  lua_setfield(L, -2, "__index");
-  lua_pushboolean(L, 0);
-  lua_setfield(L, -2, "__metatable");
-  lua_setmetatable(L, -2);
-}
-
 }  // namespace
 
-void open_libraries(lua_State* L, Interpreter&) {
+void open_libraries(lua_State* L, Interpreter& in) {
   const int all = lua_gettop(L);
-  lua_newtable(L);
-  lua_setfield(L, LUA_REGISTRYINDEX, "tandem.files");
   open_base(L, all);
   open(L, all, LUA_MATHLIBNAME, luaopen_math);
   open_math(L);
@@ -542,19 +407,11 @@ void open_libraries(lua_State* L, Interpreter&) {
   open(L, all, LUA_UTF8LIBNAME, luaopen_utf8);
   for (const char* const name : {"len", "codepoint", "offset"}) count_steps<length_of_text>(L, name);
   lua_settop(L, all);
-  open_rest(L, all, "debug", kDebug, false);
-  open_rest(L, all, "os", kOs, false);
-  open_rest(L, all, "io", nullptr, true);
+  lua_newtable(L);
+  luaL_setfuncs(L, kDebug, 0);
+  lua_setfield(L, all, "debug");
   lua_settop(L, all);
+  open_outside(L, in);
 }
 
 }  // namespace tandem::controllers::lua
-
-// The files of the process, which Lua's own code refers to in functions that scripts do not have: by the linker's
-// option
-// --wrap.
-extern "C" {
-FILE* __wrap_stdin = nullptr;
-FILE* __wrap_stdout = nullptr;
-FILE* __wrap_stderr = nullptr;
-}

@@ -13,6 +13,8 @@ void __real_luaE_setdebt(global_State* all, std::ptrdiff_t debt);
 void __wrap_luaE_setdebt(global_State* all, std::ptrdiff_t debt);
 void __wrap_luaD_shrinkstack(lua_State* state);
 unsigned __wrap_luaS_hash(const char* text, std::size_t size, unsigned seed);
+const void* __real_luaT_gettm(void* metatable, int event, void* name);
+const void* __wrap_luaT_gettm(void* metatable, int event, void* name);
 
 /// The machine looks for a hook. 0: it need not look again before the next loop, call or return.
 int __wrap_luaG_traceexec(lua_State* state, const std::uint32_t* instruction) {
@@ -30,6 +32,18 @@ void __wrap_luaE_setdebt(global_State* all, std::ptrdiff_t) {
 
 /// The collector leaves stacks as long as they are, so that what a coroutine allocates does not depend on when it came.
 void __wrap_luaD_shrinkstack(lua_State*) {}
+
+/// Fields of metatables. When memory is collected is not the same in every run, so that no script may see it: entries
+/// of weak tables stay, and scripts' __gc are called at the end of their robot (Interpreter::finalize_last). Only
+/// functions of Lua's own library, which close files, are called by the collector.
+const void* __wrap_luaT_gettm(void* metatable, int event, void* name) {
+  constexpr int kGc = 2, kMode = 3;                   // in Lua 5.4
+  constexpr unsigned char kFunctionOfLibrary = 0x16;  // … the type of a function in C without upvalues
+  if (event == kMode) return nullptr;
+  const void* const found = __real_luaT_gettm(metatable, event, name);
+  if (event != kGc || found == nullptr) return found;
+  return static_cast<const unsigned char*>(found)[8] == kFunctionOfLibrary ? found : nullptr;
+}
 
 /// The seed of the hashes of texts, which else is an address and the time: then `#t` of a list with holes differs.
 unsigned __wrap_luaS_hash(const char*, std::size_t, unsigned) {

@@ -1,6 +1,7 @@
 #include "controllers/lua_controller/lua_controller.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <stdexcept>
 
 #include "controllers/lua_controller/sources.hpp"
@@ -28,6 +29,8 @@ class Interpreters {
     if (present_ == nullptr) present_ = read(params);
     return present_;
   }
+  /// True once.
+  bool first_use() noexcept { return !used_.exchange(true); }
   void set_present(const std::shared_ptr<const Script>& script) {
     const std::lock_guard hold(lock_);
     present_ = script;
@@ -69,6 +72,8 @@ class Interpreters {
     script->path = params.script;
     script->files = read_sources(params.script, params.written, {});
     script->strict = params.strict;
+    script->argos = params.argos;
+    script->allow_io = params.allow_io;
     script->most_instructions = params.most_instructions;
     script->most_memory = static_cast<std::uint64_t>(params.most_memory_MiB) << 20U;
     script->params = params.others;
@@ -85,6 +90,7 @@ class Interpreters {
   }
 
   std::mutex lock_;
+  std::atomic<bool> used_{false};
   std::shared_ptr<const Script> present_;
   std::vector<Place> places_;
 };
@@ -95,6 +101,14 @@ void LuaController::Params::describe(hal::ParamVisitor& v) {
   v.text("script", script, "The script, in Lua 5.4. Modules that it requires lie beneath its folder.");
   written = script;
   v.text(hal::kPathParam, script, "");
+  if (hal::in_argos_file(v)) argos = true;
+  v.flag("argos", argos,
+         "Readings of an e-puck by its own curve, random.bernoulli as a truth value, random.uniform_int as a float, "
+         "bytes of messages that wrap: as ARGoS has them. Left out in an ARGoS file: true.");
+  v.flag(
+      "allow_io", allow_io,
+      "The script has io, os, loadfile and package.path of Lua, and dofile takes any path; its runs need not repeat. "
+      "The option --allow-io sets it for all scripts.");
   v.flag("strict", strict, "Reading a global that nothing was assigned to is an error.");
   v.integer(
       "most_instructions", most_instructions, {100'000.0, 1e15},
@@ -121,7 +135,7 @@ void LuaController::start_outputs() {
   const Interpreter& in = *shared_->interpreter;
   for (std::size_t i = 0; i < in.devices().size(); ++i) {
     const hal::PortType& type = *in.devices()[i].type;
-    if (in.devices()[i].api == nullptr || type.name != std::string_view("range_and_bearing") ||
+    if (in.devices()[i].api == nullptr || type.plain_name() != hal::RangeAndBearingSend::kName ||
         type.role != hal::Role::Actuator)
       continue;
     const auto* const board = in.kind().part<hal::RangeAndBearingPart>();
@@ -137,6 +151,8 @@ LuaController::LuaController(hal::Robot& robot, const Params& params)
   try {
     shared_->interpreter = interpreters_->place(this, script, robot.kind(), list_of(robot).devices());
     take(robot);
+    if (script->allow_io && interpreters_->first_use())
+      actor_.log.warning("its script may use files, the clock and the environment (allow_io): the run need not repeat");
     const std::lock_guard hold(shared_->interpreter->lock());
     shared_->variables = shared_->interpreter->begin(actor_);
   } catch (const std::exception& e) {
@@ -181,9 +197,21 @@ void LuaController::leave() noexcept {
       } catch (const std::exception& e) {
         actor_.log.error(std::string("in destroy(): ") + e.what());
       }
+      finalize(in, *shared);
     }
   }
   if (--shared->copies == 0) in.end(shared->variables);
+}
+
+/// Calls `__gc` of the robot's objects, the last one that got it first.
+void LuaController::finalize(Interpreter& in, Shared& shared) noexcept {
+  for (bool more = true; more;) {
+    try {
+      more = in.finalize_last(actor_, shared.variables);
+    } catch (const std::exception& e) {
+      actor_.log.error(std::string("in __gc: ") + e.what());
+    }
+  }
 }
 
 void LuaController::controls(hal::Controls& controls) {

@@ -22,6 +22,8 @@ class LuaController final : public hal::Controller {
     std::string script;
     std::string written;  ///< the same, as it stands in the file
     bool strict = false;
+    bool argos = false;     ///< numbers and readings exactly as ARGoS' scripts get them
+    bool allow_io = false;  ///< files, clock and environment are the script's, too
     std::int64_t most_instructions = 100'000'000;
     std::int64_t most_memory_MiB = 16;
     std::vector<hal::NamedText> others;
@@ -59,6 +61,7 @@ class LuaController final : public hal::Controller {
   void start_outputs();
   void begin_anew(const std::vector<hal::SourceFile>& files);
   void leave() noexcept;
+  void finalize(Interpreter& in, Shared& shared) noexcept;
 
   std::shared_ptr<Interpreters> interpreters_;
   std::shared_ptr<Shared> shared_;

@@ -41,9 +41,21 @@ void* Memory::allocate(void* self, void* block, std::size_t old_size, std::size_
     if (price > 0 && !memory.charge(price)) return nullptr;
   }
   void* const made = memory.change(block, old_size, size);
+  if constexpr (kNumbered) {
+    if (tag == LUA_TTABLE && size == kTableBytes && made != nullptr) {
+      ++memory.tables_;
+      std::memcpy(static_cast<std::byte*>(made) + kTableBytes, &memory.tables_, sizeof memory.tables_);
+    }
+  }
   if (of_state != nullptr && made != nullptr) *of_state = made;
   if (memory.in_use_ >= memory.collect_at_) memory.steps_.interrupt();
   return made;
+}
+
+std::uint64_t Memory::number_of(const void* table) noexcept {
+  std::uint64_t number = 0;
+  if constexpr (kNumbered) std::memcpy(&number, static_cast<const std::byte*>(table) + kTableBytes, sizeof number);
+  return number;
 }
 
 /// What a new block costs the robot. Short texts are shared by all robots of the interpreter, so who makes one first is

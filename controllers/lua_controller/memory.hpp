@@ -31,6 +31,9 @@ class Memory {
   static void* allocate(void* self, void* block, std::size_t old_size, std::size_t size) noexcept;
   std::size_t in_use() const noexcept { return in_use_; }
 
+  /// Number of a table among all that were made, in their order; 0: there is no room for it.
+  static std::uint64_t number_of(const void* table) noexcept;
+
   /// Where the next small block comes from, unless one is free.
   const std::byte* next() const noexcept { return next_; }
 
@@ -56,6 +59,9 @@ class Memory {
  private:
   static constexpr std::size_t kGrain = 16;
   static constexpr std::size_t kSmall = 1024;
+  // Of a table of Lua 5.4. On machines of 64 bits its block is larger: behind it is room for its number.
+  static constexpr std::size_t kTableBytes = 8 + 6 * sizeof(void*);
+  static constexpr bool kNumbered = kTableBytes % kGrain != 0 && kGrain - kTableBytes % kGrain >= sizeof(std::uint64_t);
   static constexpr std::size_t kChunk = std::size_t{64} << 10;
   struct Free {
     Free* next;
@@ -76,6 +82,7 @@ class Memory {
   std::size_t left_ = 0;
   std::size_t in_use_ = 0;
   std::size_t collect_at_ = SIZE_MAX;
+  std::uint64_t tables_ = 0;  // that were made
 
   Account* account_ = nullptr;
   std::uint64_t call_left_ = 0;

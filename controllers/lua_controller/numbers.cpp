@@ -113,6 +113,10 @@ int math_randomseed(lua_State* L) {
 
 // --- robot.random ---
 
+bool of_argos(lua_State* L) {
+  return Interpreter::of(L).script().argos;
+}
+
 int uniform(lua_State* L) {
   const int count = lua_gettop(L);
   if (count > 2) return luaL_error(L, "robot.random.uniform() expects 0, 1, or 2 arguments");
@@ -128,13 +132,21 @@ int uniform_int(lua_State* L) {
   const double low = count == 2 ? std::floor(luaL_checknumber(L, 1)) : 0.0;
   const double high = std::floor(luaL_checknumber(L, count));
   luaL_argcheck(L, low < high && std::fabs(low) < 9e15 && std::fabs(high) < 9e15, count, "interval is empty");
-  lua_pushinteger(L, random_of(L).integer(static_cast<std::int64_t>(low), static_cast<std::int64_t>(high) - 1));
+  const std::int64_t drawn = random_of(L).integer(static_cast<std::int64_t>(low), static_cast<std::int64_t>(high) - 1);
+  if (of_argos(L))
+    lua_pushnumber(L, static_cast<double>(drawn));
+  else
+    lua_pushinteger(L, drawn);
   return 1;
 }
 
 int bernoulli(lua_State* L) {
   if (lua_gettop(L) > 1) return luaL_error(L, "robot.random.bernoulli() expects 0 or 1 arguments");
-  lua_pushinteger(L, random_of(L).chance(luaL_optnumber(L, 1, 0.5)) ? 1 : 0);
+  const bool drawn = random_of(L).chance(luaL_optnumber(L, 1, 0.5));
+  if (of_argos(L))
+    lua_pushboolean(L, drawn ? 1 : 0);
+  else
+    lua_pushinteger(L, drawn ? 1 : 0);
   return 1;
 }
 

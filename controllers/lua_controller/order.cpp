@@ -4,13 +4,16 @@
 #include <limits>
 
 #include "controllers/lua_controller/devices.hpp"
+#include "controllers/lua_controller/memory.hpp"
 #include "controllers/lua_controller/own_tables.hpp"
 
 namespace tandem::controllers::lua {
 namespace {
 
-/// A key, as far as it has an order that is the same in every run: numbers, then texts, then truth values.
+/// A key, as far as it has an order that is the same in every run: numbers, then texts, then truth values, then tables
+/// in the order in which they were made.
 struct Key {
+  static constexpr int kTable = 3, kObject = 4;  // as ranks
   int rank = 0;
   bool whole = false;
   lua_Integer integer = 0;
@@ -49,16 +52,20 @@ Key key_at(lua_State* L, int index) {
       key.rank = 2;
       key.integer = lua_toboolean(L, index);
       break;
+    case LUA_TTABLE:
+      key.integer = static_cast<lua_Integer>(Memory::number_of(lua_topointer(L, index)));
+      key.rank = key.integer != 0 ? Key::kTable : Key::kObject;
+      break;
     default:
-      key.rank = 3;
+      key.rank = Key::kObject;
   }
   return key;
 }
 
 int no_order(lua_State* L) {
   return luaL_error(L,
-                    "the table has keys that are tables or functions, which have no order that is the same in every "
-                    "run; use numbers or texts as keys");
+                    "the table has several keys that are functions or coroutines, which have no order that is the same "
+                    "in every run; use numbers, texts or tables as keys");
 }
 
 /// Pushes a list of all keys in order. Its memory is Lua's: an error may leave at any time.
@@ -73,13 +80,24 @@ void push_keys(lua_State* L, int table) {
   auto* const keys = static_cast<Key*>(lua_newuserdatauv(L, sizeof(Key) * static_cast<std::size_t>(count) + 1, 0));
   const int memory = lua_gettop(L);
   lua_createtable(L, static_cast<int>(count), 0);
+  lua_pushnil(L);  // or a table: keys that are objects, by the `size` of their Key
   Key* end = keys;
-  int objects = 0;
+  lua_Integer objects = 0;
+  int without_order = 0;
   lua_pushnil(L);
   while (lua_next(L, table) != 0) {
     lua_pop(L, 1);
     *end = key_at(L, -1);
-    if (end->rank == 3 && ++objects > 1) no_order(L);
+    if (end->rank == Key::kObject && ++without_order > 1) no_order(L);
+    if (end->rank >= Key::kTable) {
+      if (objects == 0) {
+        lua_newtable(L);
+        lua_replace(L, memory + 2);
+      }
+      lua_pushvalue(L, -1);
+      lua_rawseti(L, memory + 2, ++objects);
+      end->size = static_cast<std::size_t>(objects);
+    }
     ++end;
   }
   std::sort(keys, end);
@@ -89,15 +107,10 @@ void push_keys(lua_State* L, int table) {
     if (key->rank == 0 && !key->whole) lua_pushnumber(L, key->number);
     if (key->rank == 1) lua_pushlstring(L, key->text, key->size);
     if (key->rank == 2) lua_pushboolean(L, static_cast<int>(key->integer));
-    if (key->rank == 3) {  // the only one
-      lua_pushnil(L);
-      while (lua_next(L, table) != 0) {
-        lua_pop(L, 1);
-        if (key_at(L, -1).rank == 3) break;
-      }
-    }
+    if (key->rank >= Key::kTable) lua_rawgeti(L, memory + 2, static_cast<lua_Integer>(key->size));
     lua_rawseti(L, memory + 1, ++n);
   }
+  lua_settop(L, memory + 1);
   lua_remove(L, memory);
 }
 
@@ -146,7 +159,7 @@ int next(lua_State* L) {
   show_whole(L);
   const bool first = lua_isnil(L, 2);
   const Key before = first ? Key{} : key_at(L, 2);
-  if (before.rank == 3) return 0;  // the last
+  if (before.rank == Key::kObject) return 0;  // the last
   bool found = false;
   Key least;
   int objects = 0;
@@ -157,7 +170,7 @@ int next(lua_State* L) {
     lua_pop(L, 1);
     ++looked_at;
     const Key key = key_at(L, -1);
-    if (key.rank == 3 && ++objects > 1) no_order(L);
+    if (key.rank == Key::kObject && ++objects > 1) no_order(L);
     if ((first || before < key) && (!found || key < least)) {
       found = true;
       least = key;

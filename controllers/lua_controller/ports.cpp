@@ -222,7 +222,7 @@ void open_ports(lua_State* L, Interpreter& in) {
         lua_rawset(L, -3);
       }
       lua_setiuservalue(L, -2, 1);
-      lua_setfield(L, -2, type.name.data());
+      lua_setfield(L, -2, type.plain_name().data());
     }
     lua_setfield(L, -2, role == hal::Role::Sensor ? "sensors" : "actuators");
   }

@@ -7,6 +7,7 @@
 
 #include "controllers/lua_controller/devices.hpp"
 #include "controllers/lua_controller/own_tables.hpp"
+#include "hal/device/argos_curves.hpp"
 #include "hal/device/argos_readings.hpp"
 #include "hal/device/ring_sensors.hpp"
 
@@ -89,11 +90,11 @@ void open_light(lua_State* L, Interpreter& in, std::size_t device) {
 
 void fill_proximity(lua_State* L, Interpreter& in, std::size_t device, const void* port) {
   const auto& p = *static_cast<const hal::Proximity*>(port);
-  const hal::argos::Curve curve =
-      in.device(device).written == "proximity" ? &hal::argos::plain_curve : &hal::argos::ring_curve;
+  hal::ArgosProximity curve = hal::argos_proximity(in.device(device).written);
+  if (curve == hal::ArgosProximity::Epuck && !in.script().argos) curve = hal::ArgosProximity::Footbot;
   fill_ring(L, in, device, [&](std::size_t i) {
-    if (i >= p.count || p.distance_m[i] >= p.range_m) return 0.0;
-    return curve(static_cast<double>(p.distance_m[i]));
+    const bool nothing = i >= p.count || p.distance_m[i] == p.range_m;  // farther: a reading that is noise alone
+    return nothing ? 0.0 : hal::argos_reading(curve, static_cast<double>(p.distance_m[i]));
   });
 }
 

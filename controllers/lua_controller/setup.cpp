@@ -223,7 +223,7 @@ void Interpreter::setup_globals(lua_State* L) {
   lua_setfield(L, 1, "_tandem_metatable");
 
   lua_newtable(L);  // 2: libraries
-  for (const char* const library : {"math", "string", "table", "coroutine", "utf8", "os", "debug", "io"}) {
+  for (const char* const library : {"math", "string", "table", "coroutine", "utf8", "os", "debug", "io", "package"}) {
     lua_pushnil(L);  // no readings
     lua_getfield(L, 1, library);
     make_late(L);

@@ -2,6 +2,8 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <set>
+#include <utility>
 
 #include "core/config/reading.hpp"
 #include "hal/element_options.hpp"
@@ -133,11 +135,13 @@ class ArenaReader {
       d.max_trials = attributes.max_trials;
       d.base_num = attributes.base_num;
       check_places(c, d);
+      reading_.number_things(true);
       if (c.children.size() == 1)
         thing(c.children.front(), &d);
       else
         reading_.error(c, "<entity> needs exactly one robot, box, cylinder or light inside; it has " +
                               std::to_string(c.children.size()));
+      reading_.number_things(false);
     });
   }
 
@@ -181,9 +185,9 @@ class ArenaReader {
     }
     for (const Element::Attribute& a : e.attributes) {
       if (std::find(own.begin(), own.end(), a.name) != own.end()) continue;
-      reading_.error(e, a.name,
-                     "method=\"" + method + "\" has no such attribute; it takes: " +
-                         listed({own.begin() + 1, own.end()}) + did_you_mean(a.name, own));
+      reading_.unread(e, a.name,
+                      "method=\"" + method + "\" has no such attribute; it takes: " +
+                          listed({own.begin() + 1, own.end()}) + did_you_mean(a.name, own));
     }
   }
 
@@ -299,6 +303,8 @@ class ArenaReader {
     const auto* const kind = reading_.catalog().find<hal::RobotKind>(e.name);
     auto own = std::make_shared<hal::RobotKind>(*kind);
     const std::string usual = attributes_of(*own);
+    if (e.argos && e.child("controller") != nullptr && e.child("bridge") == nullptr) add_extras(item, *own);
+    if (e.argos && own->drive() != nullptr && e.child("bridge") == nullptr) lift_limit(e, *own);
     item.id = reading_.read(e, schema::RobotOfKind{{}, *own}).id;
     const std::string said = attributes_of(*own);
     const auto* const fitted = reading_.fitted(e.name);
@@ -312,6 +318,26 @@ class ArenaReader {
       item.own_kind = own_kinds_.try_emplace(e.name + said, std::move(own)).first->second;
   }
 
+  /// Parts that robots of the kind may have besides, and that the configuration of its controller means.
+  void add_extras(const RobotItem& item, hal::RobotKind& kind) {
+    if (item.controller >= out_.controllers.size()) return;
+    for (const DeviceChoice& choice : out_.controllers[item.controller].sensors) {
+      const auto* const extra =
+          reading_.catalog().find<hal::ExtraPart>(hal::ExtraPart::entry(kind.name, choice.device));
+      if (extra != nullptr) kind.add(extra->make());
+    }
+  }
+
+  /// ARGoS limits no wheel.
+  void lift_limit(const Element& e, hal::RobotKind& kind) {
+    const double most_m_s = std::exchange(std::get<hal::DifferentialDrive>(kind.locomotion).max_speed_m_s,
+                                          hal::DifferentialDrive::kNoLimit_m_s);
+    if (e.attribute("max_speed") != nullptr || !unlimited_.insert(kind.name).second) return;
+    const std::string most = hal::format_quantity(most_m_s, hal::unit::cm_s);
+    reading_.warn(e, "the wheels of <" + e.name + "> have no limit, as in ARGoS; those of a real one turn with " +
+                         most + " at most: max_speed=\"" + most + "\" limits these, too");
+  }
+
   static std::string attributes_of(hal::RobotKind& kind) {
     Element e;
     ElementWriter writer(e);
@@ -323,13 +349,13 @@ class ArenaReader {
 
   void robot(Element& e, const Distribute* distribute) {
     RobotItem item;
+    reading_.once(e, "controller", [&](Element& c) { controller(c, item); });
     attributes_of_robot(e, item);
     item.kind = e.name;
     item.line = e.line;
     item.placement = body(e, distribute);
     if (distribute != nullptr) item.distribute = *distribute;
     if (e.child("controller") == nullptr) reading_.error(e, "<" + e.name + "> needs a <controller config=\"…\"/>");
-    reading_.once(e, "controller", [&](Element& c) { controller(c, item); });
     reading_.once_or_default(e, "battery", [&](Element& c) { item.battery = battery(c); });
     reading_.once(e, "bridge", [&](Element& c) {
       std::shared_ptr<const void> own;
@@ -408,6 +434,7 @@ class ArenaReader {
   Scenario& out_;
   std::map<std::string, std::size_t> controllers_;                          // by id
   std::map<std::string, std::shared_ptr<const hal::RobotKind>> own_kinds_;  // by what elements say
+  std::set<std::string> unlimited_;                                         // kinds that a warning has named
   int distributes_ = 0;
 };
 

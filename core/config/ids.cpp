@@ -19,7 +19,7 @@ class Claims {
   explicit Claims(Reading& reading) : reading_(reading) {}
 
   void add(const std::string& id, const std::optional<Distribute>& distribute, int line) {
-    if (id.empty() || (distribute && distribute->quantity == 0)) return;
+    if (distribute ? distribute->quantity == 0 : id.empty()) return;
     if (distribute)
       distributed_[id].push_back({distribute->base_num, distribute->base_num + distribute->quantity - 1, line});
     else if (const auto [first, fresh] = single_.emplace(id, line); !fresh)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 namespace tandem::core {
 namespace {
@@ -64,6 +65,7 @@ Element& add(Element& parent, const std::string& name, const std::string& origin
   Element& added = parent.children.emplace_back();
   added.name = name;
   added.file = origin;
+  added.argos = parent.argos;
   return added;
 }
 
@@ -95,6 +97,36 @@ Element* select(Element& parent, const Part& part, const std::string& origin, st
   return nullptr;
 }
 
+void set(Element& element, const Element::Attribute& attribute) {
+  for (Element::Attribute& a : element.attributes) {
+    if (a.name == attribute.name) {
+      a = attribute;
+      return;
+    }
+  }
+  element.attributes.push_back(attribute);
+}
+
+/// Sets it in every element that the path names. @returns what is wrong with the path, or nothing
+std::string set_in(Element& from, std::span<const Part> path, const Element::Attribute& attribute) {
+  if (path.empty()) {
+    set(from, attribute);
+    return {};
+  }
+  std::string why;
+  if (path.front().selector != "*") {
+    Element* const next = select(from, path.front(), attribute.origin, why);
+    return next == nullptr ? why : set_in(*next, path.subspan(1), attribute);
+  }
+  bool any = false;
+  for (Element& child : from.children) {
+    if (child.name != path.front().name) continue;
+    any = true;
+    if (why = set_in(child, path.subspan(1), attribute); !why.empty()) return why;
+  }
+  return any ? "" : "<" + from.name + "> has no " + path.front().name;
+}
+
 }  // namespace
 
 void apply_override(Element& root, const std::string& assignment, Problems& problems) {
@@ -108,21 +140,9 @@ void apply_override(Element& root, const std::string& assignment, Problems& prob
   if (parts.size() < 2 || broken || !parts.back().selector.empty()) {
     return refuse("the path must name elements and at last an attribute, e.g. arena.distribute[0].entity.quantity");
   }
-  Element* at = &root;
-  for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
-    std::string why;
-    Element* next = select(*at, parts[i], origin, why);
-    if (next == nullptr) return refuse(why);
-    at = next;
-  }
   const Element::Attribute set{parts.back().name, assignment.substr(equals + 1), 0, origin};
-  for (Element::Attribute& a : at->attributes) {
-    if (a.name == set.name) {
-      a = set;
-      return;
-    }
-  }
-  at->attributes.push_back(set);
+  parts.pop_back();
+  if (const std::string why = set_in(root, parts, set); !why.empty()) refuse(why);
 }
 
 }  // namespace tandem::core

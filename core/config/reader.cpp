@@ -23,6 +23,18 @@ std::string_view without_robot(std::string_view argos_name, const hal::Catalog& 
   return {};
 }
 
+/// ARGoS drops no message and no blob: the device with more room is there, too.
+void add_grown(const hal::Catalog& catalog, const std::string& device, hal::Role role,
+               std::vector<DeviceChoice>& choices) {
+  for (const hal::PortType* port : catalog.all<hal::PortType>()) {
+    if (port->role != role || port->grows != device) continue;
+    DeviceChoice grown = choices.back();
+    grown.device = port->name;
+    grown.grown = true;
+    choices.push_back(std::move(grown));
+  }
+}
+
 void read_devices(Reading& reading, Element& list, bool sensors, std::vector<DeviceChoice>& choices) {
   const std::vector<std::string>& known = sensors ? reading.known().sensors : reading.known().actuators;
   std::map<std::string, int> lines;
@@ -41,11 +53,18 @@ void read_devices(Reading& reading, Element& list, bool sensors, std::vector<Dev
       continue;
     }
     const auto [first, fresh] = lines.emplace(choice.device, e.line);
-    if (!fresh)
-      reading.error(e, "<" + e.name + ">: the device '" + choice.device + "' is already on line " +
-                           std::to_string(first->second));
-    else
-      choices.push_back(std::move(choice));
+    if (!fresh) {
+      reading.unread(e, "<" + e.name + ">: the device '" + choice.device + "' is already on line " +
+                            std::to_string(first->second));
+      std::erase_if(choices, [&](const DeviceChoice& other) {
+        const auto* const port = reading.catalog().find<hal::PortType>(
+            hal::port_entry(other.device, sensors ? hal::Role::Sensor : hal::Role::Actuator));
+        return other.device == choice.device || (other.grown && port->grows == choice.device);
+      });
+    }
+    const std::string device = choice.device;
+    choices.push_back(std::move(choice));
+    if (e.argos) add_grown(reading.catalog(), device, sensors ? hal::Role::Sensor : hal::Role::Actuator, choices);
   }
 }
 
@@ -59,6 +78,7 @@ void read_configuration(Reading& reading, Element& e) {
   config.params.name = "params";
   config.params.file = e.file;
   config.params.line = e.line;
+  config.params.argos = e.argos;
   reading.once(e, "sensors", [&](Element& c) {
     reading.read<schema::Sensors>(c);
     read_devices(reading, c, true, config.sensors);
@@ -132,7 +152,7 @@ Scenario read_parts(Reading& reading, Element& root) {
                             std::filesystem::path(root.file).filename().string() + "\"/>");
     return std::move(reading.out());
   }
-  if (root.name != "tandem" && root.name != "argos-configuration") {
+  if (root.name != "tandem" && root.name != hal::kArgosRoot) {
     reading.error(
         root, "the root element is <" + root.name + ">; an experiment starts with <tandem> or <argos-configuration>");
     return std::move(reading.out());
@@ -185,6 +205,7 @@ ExperimentFile opened(Element root, const std::vector<std::string>& overrides, P
 void report(Problems found, const std::string& file, Problems& problems) {
   const auto place = [&](const Problem& p) { return std::tuple(p.line > 0, p.file == file, p.line); };
   std::stable_sort(found.begin(), found.end(), [&](const Problem& a, const Problem& b) { return place(a) < place(b); });
+  count_ignored(found);
   problems.insert(problems.end(), found.begin(), found.end());
 }
 
@@ -383,6 +404,9 @@ std::string device_name(std::string_view argos_name, hal::Role role, const hal::
   const std::string_view bare = without_robot(argos_name, catalog);
   if (bare.empty()) return std::string(argos_name);
   if (bare == "encoder" && sensor) return "wheel_encoders";
+  // ARGoS' e-puck plug-in names these otherwise.
+  if (bare == "wheels") return sensor ? "wheel_encoders" : "differential_steering";
+  if (!sensor && (bare == "rgb_leds" || bare == "base_leds")) return "leds";
   return std::string(catalog.find<hal::PortType>(hal::port_entry(bare, role)) != nullptr ? bare : argos_name);
 }
 

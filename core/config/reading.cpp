@@ -55,7 +55,7 @@ std::vector<std::string> Reading::check(const Element& element, const schema::El
     if (value == nullptr) {
       error(element, "<" + element.name + "> needs the attribute '" + name + "'");
       missing.push_back(name);
-    } else if (value->empty()) {
+    } else if (value->empty() && !(numbered_ && name == "id")) {
       error(element, name, "must not be empty");
     }
   }
@@ -68,9 +68,13 @@ std::vector<std::string> Reading::check(const Element& element, const schema::El
       (may_hold(schema::kTrackerKind) && known_.trackers.empty()))
     return missing;
   const std::vector<std::string> allowed = known_.children_of(words(info.children));
+  const bool things = may_hold(schema::kRobotKind);  // none of which may be missing
   for (const Element& child : element.children) {
     if (std::find(allowed.begin(), allowed.end(), child.name) != allowed.end()) continue;
-    error(child, cannot_hold(element, child, allowed));
+    if (things)
+      error(child, cannot_hold(element, child, allowed));
+    else
+      unread(child, cannot_hold(element, child, allowed));
   }
   return missing;
 }
@@ -80,7 +84,7 @@ Element* Reading::only(Element& parent, std::string_view name) {
   for (Element& child : parent.children) {
     if (child.name != name) continue;
     if (first != nullptr)
-      error(child, "a second <" + child.name + ">; the first is on line " + std::to_string(first->line));
+      unread(child, "a second <" + child.name + ">; the first is on line " + std::to_string(first->line));
     else
       first = &child;
   }
@@ -92,6 +96,7 @@ Element& Reading::add_child(Element& parent, std::string_view name) {
   child.name = name;
   child.file = parent.file;
   child.line = parent.line;
+  child.argos = parent.argos;
   return child;
 }
 

@@ -67,6 +67,13 @@ class Reading {
     problems_.back().warning = true;
   }
 
+  /// Something that nothing reads: an error, in an ARGoS file a warning.
+  void unread(const Element& e, std::string message) { problems_.push_back(unread_at(e, std::move(message))); }
+  void unread(const Element& e, std::string_view attribute, std::string message) {
+    problems_.push_back(unread_at(e, attribute, std::move(message)));
+  }
+  /// While `on`, ids are beginnings of names that numbers end, and may be empty.
+  void number_things(bool on) noexcept { numbered_ = on; }
   void add_problems(Problems found) { problems_.insert(problems_.end(), found.begin(), found.end()); }
 
   /// Reads an element by the schema of `T`: required and unknown attributes, values, children. Attributes that were
@@ -112,7 +119,7 @@ class Reading {
   /// @returns the required attributes that are not there
   std::vector<std::string> check(const Element& element, const schema::ElementInfo& info);
 
-  /// The only child of that name, or null; a second one is an error.
+  /// The only child of that name, or null; a second one is not read.
   Element* only(Element& parent, std::string_view name);
 
   /// Calls `use` for the only child of that name, if it is there.
@@ -145,6 +152,7 @@ class Reading {
   Problems& problems_;
   Scenario out_;
   std::map<std::string, std::vector<hal::AnyPart>> fitted_;  // by kind
+  bool numbered_ = false;
 };
 
 // The parts of a file. Each reads one element into `reading.out()`.

@@ -15,7 +15,11 @@ namespace tandem::core::schema {
 
 struct Root {
   static constexpr ElementInfo kElement{
-      "tandem", "An experiment. The name <argos-configuration> means the same.", "",
+      "tandem",
+      "An experiment. Under the name <argos-configuration> it is one of ARGoS 3: what nothing reads is a warning, and "
+      "some "
+      "defaults are ARGoS' (docs/from-argos.md).",
+      "",
       "plugins kinds fitted framework controllers arena trackers safety desk physics_engines "
       "media visualization loop_functions record run"};
   std::int64_t version = 0;

@@ -139,7 +139,9 @@ Upgrade to_version_1(const std::string& text, const hal::Catalog& catalog) {
     const bool device = depth == 4 && path[1] == "controllers" && (path[3] == "sensors" || path[3] == "actuators");
     if (depth == 0) {
       if (tag->name == "argos-configuration") {
-        if (tag->kind != Tag::Kind::End) edits.note(tag->name, "<argos-configuration> is now <tandem>");
+        if (tag->kind != Tag::Kind::End)
+          edits.note(tag->name,
+                     "<argos-configuration> is now <tandem>, whose defaults are others: see docs/from-argos.md");
         edits.replace(tag->name, "tandem");
       }
       if (tag->kind != Tag::Kind::End) {

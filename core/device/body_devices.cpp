@@ -113,8 +113,8 @@ class MicrophoneSensor final : public Sensor {
 // --- battery ---
 
 constexpr ErrorText kChargeNoise{
-    "noise_range", 10 * 1e-3, hal::unit::none, {0.0, 1.0}, "Uniform noise of +-this on the charge reading."};
-using ChargeNoise = OneError<kChargeNoise>;
+    "noise_range", 10 * 1e-3, hal::unit::none, {-1.0, 1.0}, "Uniform noise on the charge reading."};
+using ChargeNoise = OneInterval<kChargeNoise>;
 
 /// ARGoS' three discharge models: a part a tick, a part a metre and a radian moved, or both.
 class BatterySensor final : public EachSensor<BatterySensor, hal::Battery, ChargeNoise, ChargeState> {
@@ -141,7 +141,7 @@ class BatterySensor final : public EachSensor<BatterySensor, hal::Battery, Charg
     double& charge = kept_[robot.i].charge;
     charge = std::max(0.0, charge - used);
     double read = config_.full_charge > 0.0 ? charge / config_.full_charge : 0.0;
-    if (errors_.amount > 0.0) read += errors_.amount * to_symmetric(robot.draw(Stream::BatteryNoise)[0]);
+    if (!errors_.amount.empty()) read += errors_.amount.at(to_symmetric(robot.draw(Stream::BatteryNoise)[0]));
     read = std::min(std::max(read, 0.0), 1.0);
     port.charge = static_cast<float>(read);
     port.supply_V = static_cast<float>(part_.empty_V + read * (part_.full_V - part_.empty_V));

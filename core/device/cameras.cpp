@@ -311,9 +311,10 @@ struct OmniOptions : CameraOptions {
 };
 
 /// Lights below it whose distance along the ground is within reach.
+template <class OfPort>
 class OmniSensor final : public Sensor {
  public:
-  using Port = hal::OmnidirectionalCamera;
+  using Port = OfPort;
   using Part = hal::OmniCameraPart;
   using Errors = OmniOptions;
   static constexpr std::string_view kMedium = LedMedium::kKind;
@@ -329,7 +330,7 @@ class OmniSensor final : public Sensor {
         flaws_(flaws) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
-    auto* cameras = static_cast<hal::OmnidirectionalCamera*>(ports);
+    auto* cameras = static_cast<Port*>(ports);
     lookout_.measure(context.stores);
     for (std::size_t i = 0; i < context.block.used; ++i) {
       const std::size_t row = context.block.first_row + i;
@@ -342,7 +343,7 @@ class OmniSensor final : public Sensor {
   }
 
  private:
-  void see_around(const DeviceContext& context, std::size_t row, hal::OmnidirectionalCamera& port) noexcept {
+  void see_around(const DeviceContext& context, std::size_t row, Port& port) noexcept {
     const Bodies& b = context.stores.bodies;
     const Point from{b.x_m[row], b.y_m[row], context.stores.base_m(row) + height_m_};
     const auto covers = [this](const Point& p) {
@@ -378,9 +379,10 @@ struct LensOptions : CameraOptions {
 };
 
 /// A pinhole camera. What it sees is nearer than its range and falls into its image.
+template <class OfPort>
 class LensSensor final : public Sensor {
  public:
-  using Port = hal::PerspectiveCamera;
+  using Port = OfPort;
   using Part = hal::CameraPart;
   using Errors = LensOptions;
   static constexpr std::string_view kMedium = LedMedium::kKind;
@@ -403,12 +405,12 @@ class LensSensor final : public Sensor {
   }
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
-    auto* cameras = static_cast<hal::PerspectiveCamera*>(ports);
+    auto* cameras = static_cast<Port*>(ports);
     lookout_.measure(context.stores);
     for (std::size_t i = 0; i < context.block.used; ++i) {
       const std::size_t row = context.block.first_row + i;
       if ((context.stores.bodies.flags[row] & kAlive) == 0) continue;
-      hal::PerspectiveCamera& port = cameras[i];
+      Port& port = cameras[i];
       stamp(context, port);
       port.width_px = static_cast<std::uint32_t>(camera_.width_px);
       port.height_px = static_cast<std::uint32_t>(camera_.height_px);
@@ -464,7 +466,7 @@ class LensSensor final : public Sensor {
     return {x, y, x >= 0.0 && x <= width && y >= 0.0 && y <= height};
   }
 
-  void see_ahead(const DeviceContext& context, std::size_t row, hal::PerspectiveCamera& port) noexcept {
+  void see_ahead(const DeviceContext& context, std::size_t row, Port& port) noexcept {
     const Bodies& b = context.stores.bodies;
     const hal::CameraMount& mount = camera_.mount();
     const Point from{b.x_m[row] + b.cos_h[row] * mount.x_m, b.y_m[row] + b.sin_h[row] * mount.x_m,
@@ -487,7 +489,7 @@ class LensSensor final : public Sensor {
     });
   }
 
-  void insert(const Blob& blob, hal::PerspectiveCamera& port) noexcept {
+  void insert(const Blob& blob, Port& port) noexcept {
     if (found_ == blobs_.size()) {
       ++port.dropped;
       if (blob.distance2 >= blobs_[found_ - 1].distance2) return;
@@ -505,21 +507,38 @@ class LensSensor final : public Sensor {
   bool in_head_;
   Errors flaws_;
   double px_per_tangent_ = 1.0;
-  Aim aim_;  // of a robot that looks along x, whose camera hangs in no head
-  std::array<Blob, hal::PerspectiveCamera::kCapacity> blobs_{};  // nearest first, of one image
+  Aim aim_;                                    // of a robot that looks along x, whose camera hangs in no head
+  std::array<Blob, Port::kCapacity> blobs_{};  // nearest first, of one image
   std::size_t found_ = 0;
 };
 
 }  // namespace
 
+namespace {
+
+template <class Port>
+void add_omni(std::vector<DeviceType>& types) {
+  using Device = OmniSensor<Port>;
+  add_levels<Device>(types, "Lights in reach and in sight; noise where asked for.", "Lights in reach and in sight.",
+                     "Lights in reach and in sight, some missed, places uncertain.");
+  types.push_back(device_type<Device, Level::Default>("rot_z_only", "ARGoS' name for the default."));
+}
+
+template <class Port>
+void add_lens(std::vector<DeviceType>& types) {
+  add_levels<LensSensor<Port>>(types, "Lights in the image and in sight; noise where asked for.",
+                               "Lights in the image and in sight.",
+                               "Lights in the image and in sight, some missed, places uncertain.");
+}
+
+}  // namespace
+
 std::vector<DeviceType> camera_types() {
   std::vector<DeviceType> types;
-  add_levels<OmniSensor>(types, "Lights in reach and in sight; noise where asked for.", "Lights in reach and in sight.",
-                         "Lights in reach and in sight, some missed, places uncertain.");
-  types.push_back(device_type<OmniSensor, Level::Default>("rot_z_only", "ARGoS' name for the default."));
-  add_levels<LensSensor>(types, "Lights in the image and in sight; noise where asked for.",
-                         "Lights in the image and in sight.",
-                         "Lights in the image and in sight, some missed, places uncertain.");
+  add_omni<hal::OmnidirectionalCamera>(types);
+  add_lens<hal::PerspectiveCamera>(types);
+  add_omni<hal::OmnidirectionalCameraMany>(types);
+  add_lens<hal::PerspectiveCameraMany>(types);
   return types;
 }
 

@@ -55,7 +55,7 @@ inline DeviceType in_medium(std::string_view kind, DeviceType type) {
 enum class Level { Default, Ideal, Noisy };
 
 /// Its options. `Errors` describes them, gives those of a noisy one by `noisy()`, and may have `describe_always` for
-/// what all three take.
+/// what all three take, and `written`, the name in the file.
 template <class Errors, Level kLevel>
 struct LevelOptions : Errors {
   LevelOptions() : Errors(kLevel == Level::Noisy ? Errors::noisy() : Errors{}) {}
@@ -76,7 +76,8 @@ DeviceType device_type(std::string_view implementation, std::string_view summary
   constexpr bool kSenses = std::is_base_of_v<Sensor, Device>;
   using Factory = BlockFactory<std::conditional_t<kSenses, Sensor, Actuator>>;
   constexpr auto make = [](const Element& element, Problems& problems, const DeviceSetup& setup) {
-    const Errors errors = read_options<Options>(element, problems);
+    Errors errors = read_options<Options>(element, problems);
+    if constexpr (requires { errors.written; }) errors.written = element.name;
     if constexpr (requires { Device::kField; }) (void)setup.field(Device::kField, element, problems);
     Factory factory(
         [setup, errors](const BlockColumns& columns) { return std::make_unique<Device>(setup, errors, columns); });

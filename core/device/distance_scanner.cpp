@@ -61,14 +61,13 @@ class ScannerActuator final : public EachActuator<ScannerActuator, hal::ScannerD
 
 struct ScanNoise {
   bool show_rays = false;
-  double noise_range_m = 0.0;
-  static ScanNoise noisy() { return {.noise_range_m = 100 * 1e-4}; }
+  hal::Interval noise_range_m = {};
+  static ScanNoise noisy() { return {.noise_range_m = hal::Interval::around(100 * 1e-4)}; }
   void describe_always(hal::ParamVisitor& v) {
     v.flag("show_rays", show_rays, "Draw the rays in a view; no effect on readings.");
   }
   void describe(hal::ParamVisitor& v) {
-    v.number("noise_range", noise_range_m, hal::unit::cm, hal::kNotNegative,
-             "Uniform noise of +-this on each distance.");
+    v.interval("noise_range", noise_range_m, hal::unit::cm, "Uniform noise on each distance.");
   }
 };
 
@@ -84,7 +83,8 @@ class ScannerSensor final : public Sensor {
   ScannerSensor(const DeviceSetup& setup, const Errors& errors, const BlockColumns& columns)
       : part_(*setup.kind.part<hal::ScannerPart>()),
         scanners_(columns.find<ScannerState>()),
-        noise_m_(static_cast<float>(errors.noise_range_m)),
+        middle_m_(static_cast<float>(0.5 * (errors.noise_range_m.least + errors.noise_range_m.most))),
+        noise_m_(static_cast<float>(0.5 * (errors.noise_range_m.most - errors.noise_range_m.least))),
         samples_(static_cast<std::uint32_t>(
             std::clamp<double>(std::round(part_.rate_hz * setup.tick_s), 1.0, DistanceScanner::kSamples))) {}
 
@@ -102,7 +102,7 @@ class ScannerSensor final : public Sensor {
       aim(scanners_[i], port);
       if (port.count == 0) continue;
       rays_.look(context.stores, row, widest_m, RealSense::Scanner);
-      if (noise_m_ > 0.0F) add_noise(context, context.stores.bodies.entity[row], port);
+      if (noise_m_ > 0.0F || middle_m_ != 0.0F) add_noise(context, context.stores.bodies.entity[row], port);
       keep_in_range(port);
     }
   }
@@ -128,7 +128,7 @@ class ScannerSensor final : public Sensor {
     for (std::uint32_t k = 0; k < port.count; k += 4) {
       const auto bits = draw(context.seed, entity, Stream::ScannerNoise, context.tick, k);
       for (std::uint32_t j = 0; j < 4; ++j)
-        rays_.distance_m[k + j] += noise_m_ * (2.0F * to_unit_float(bits[j]) - 1.0F);
+        rays_.distance_m[k + j] += middle_m_ + noise_m_ * (2.0F * to_unit_float(bits[j]) - 1.0F);
     }
   }
 
@@ -145,9 +145,9 @@ class ScannerSensor final : public Sensor {
 
   const hal::ScannerPart& part_;
   const ScannerState* scanners_;
-  float noise_m_;
-  std::uint32_t samples_;  // of each head, in a tick in which the scanner turns
-  FarRays rays_;           // of the robot at hand
+  float middle_m_, noise_m_;  // of the noise, and how far to both sides
+  std::uint32_t samples_;     // of each head, in a tick in which the scanner turns
+  FarRays rays_;              // of the robot at hand
 };
 
 static_assert(RayRing::kCapacity >= DistanceScanner::kHeads * DistanceScanner::kSamples);

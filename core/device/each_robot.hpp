@@ -24,6 +24,14 @@ struct OneError {
   void describe(hal::ParamVisitor& v) { v.number(kText.name, amount, kText.unit, kText.range, kText.doc); }
 };
 
+/// The same of one that lies in an interval.
+template <const ErrorText& kText>
+struct OneInterval {
+  hal::Interval amount = {};
+  static OneInterval noisy() { return {hal::Interval::around(kText.noisy)}; }
+  void describe(hal::ParamVisitor& v) { v.interval(kText.name, amount, kText.unit, kText.doc, kText.range); }
+};
+
 /// A robot of the block that a device works for.
 struct RobotAt {
   const DeviceContext& context;

@@ -116,17 +116,16 @@ class TaskActuator final : public FlightActuator<TaskActuator, hal::FlightTask, 
 
 /// ARGoS' three ranges. Orientation: the angle and each part of the axis that the body is turned about.
 struct PlaceErrors {
-  double pos_noise_m = 0.0;
-  double angle_noise_rad = 0.0;
-  double axis_noise = 0.0;
-  static PlaceErrors noisy() { return {.pos_noise_m = 10 * 1e-3, .angle_noise_rad = 10 * 1e-3}; }
+  hal::Interval pos_noise_m = {}, angle_noise_rad = {}, axis_noise = {};
+  static PlaceErrors noisy() {
+    return {.pos_noise_m = hal::Interval::around(10 * 1e-3), .angle_noise_rad = hal::Interval::around(10 * 1e-3)};
+  }
   void describe(hal::ParamVisitor& v) {
-    v.number("pos_noise_range", pos_noise_m, hal::unit::m, hal::kNotNegative,
-             "Uniform noise of +-this on each coordinate.");
-    v.number("angle_noise_range", angle_noise_rad, hal::unit::rad, hal::kNotNegative,
-             "Uniform noise of +-this on the angle that the body is turned by.");
-    v.number("axis_noise_range", axis_noise, hal::unit::none, {0.0, 0.5},
-             "Uniform noise of +-this on each part of the axis that the body is turned about.");
+    v.interval("pos_noise_range", pos_noise_m, hal::unit::m, "Uniform noise on each coordinate.");
+    v.interval("angle_noise_range", angle_noise_rad, hal::unit::rad,
+               "Uniform noise on the angle that the body is turned by.");
+    v.interval("axis_noise_range", axis_noise, hal::unit::none,
+               "Uniform noise on each part of the axis that the body is turned about.", {-0.5, 0.5});
   }
 };
 
@@ -139,7 +138,7 @@ class PositioningSensor final : public EachSensor<PositioningSensor, hal::Positi
     const std::size_t row = robot.row();
     port.p_WB = {b.x_m[row], b.y_m[row], robot.context.stores.base_m(row)};
     port.q_WB = b.motion.empty() ? upright(b.cos_h[row], b.sin_h[row]) : b.motion[row].q_WB;
-    if (errors_.pos_noise_m > 0.0 || errors_.angle_noise_rad > 0.0 || errors_.axis_noise > 0.0)
+    if (!errors_.pos_noise_m.empty() || !errors_.angle_noise_rad.empty() || !errors_.axis_noise.empty())
       add_noise(robot.context, b.entity[row], port);
   }
 
@@ -153,14 +152,14 @@ class PositioningSensor final : public EachSensor<PositioningSensor, hal::Positi
   void add_noise(const DeviceContext& context, std::uint32_t entity, hal::Positioning& port) const noexcept {
     const auto place = draw(context.seed, entity, Stream::PositioningNoise, context.tick, 0);
     const auto turn = draw(context.seed, entity, Stream::PositioningNoise, context.tick, 1);
-    for (std::size_t k = 0; k < 3; ++k) port.p_WB[k] += errors_.pos_noise_m * to_symmetric(place[k]);
-    if (errors_.angle_noise_rad == 0.0 && errors_.axis_noise == 0.0) return;
+    for (std::size_t k = 0; k < 3; ++k) port.p_WB[k] += errors_.pos_noise_m.at(to_symmetric(place[k]));
+    if (errors_.angle_noise_rad.empty() && errors_.axis_noise.empty()) return;
     auto& q = port.q_WB;
     const double s = std::sqrt(q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    const double angle = 2.0 * std::atan2(s, q[0]) + errors_.angle_noise_rad * to_symmetric(place[3]);
+    const double angle = 2.0 * std::atan2(s, q[0]) + errors_.angle_noise_rad.at(to_symmetric(place[3]));
     std::array<double, 3> axis{0.0, 0.0, 1.0};  // of a body that is not turned: the vertical
     if (s > 1e-12) axis = {q[1] / s, q[2] / s, q[3] / s};
-    for (std::size_t k = 0; k < 3; ++k) axis[k] += errors_.axis_noise * to_symmetric(turn[k]);
+    for (std::size_t k = 0; k < 3; ++k) axis[k] += errors_.axis_noise.at(to_symmetric(turn[k]));
     const double length = std::sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);  // at least 0.13
     const double part = std::sin(0.5 * angle) / length;
     q = {std::cos(0.5 * angle), part * axis[0], part * axis[1], part * axis[2]};

@@ -9,7 +9,9 @@
 #include "core/device/ray_ring.hpp"
 #include "core/random/random.hpp"
 #include "core/space/sight.hpp"
+#include "hal/device/argos_curves.hpp"
 #include "hal/device/ring_sensors.hpp"
+#include "hal/open_params.hpp"
 
 namespace tandem::core {
 namespace {
@@ -193,8 +195,13 @@ void sense_block_avx2(const DeviceContext& context, const RayRing& ring, hal::Pr
 
 class ProximitySensor final : public Sensor {
  public:
-  ProximitySensor(const hal::ProximityPart& part, double noise_level, std::optional<FittedRays> fitted)
-      : ring_(part.mounts, part.range_m), noise_(static_cast<float>(noise_level)), fitted_(std::move(fitted)) {}
+  /// `readings`: the noise is on ARGoS' readings; nothing: on the closeness.
+  ProximitySensor(const hal::ProximityPart& part, double noise_level, std::optional<hal::ArgosProximity> readings,
+                  std::optional<FittedRays> fitted)
+      : ring_(part.mounts, part.range_m),
+        noise_(static_cast<float>(noise_level)),
+        readings_(readings),
+        fitted_(std::move(fitted)) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
     auto* proximity = static_cast<hal::Proximity*>(ports);
@@ -207,7 +214,7 @@ class ProximitySensor final : public Sensor {
   }
 
  private:
-  /// Uniform noise of +-level on the closeness, which is 0 far and 1 near.
+  /// Uniform noise of +-level on the closeness, which is 0 far and 1 near, or on the reading.
   void add_noise(const DeviceContext& context, hal::Proximity* ports) const noexcept {
     for (std::size_t i = 0; i < context.block.used; ++i) {
       hal::Proximity& port = ports[i];
@@ -218,42 +225,63 @@ class ProximitySensor final : public Sensor {
         for (std::size_t j = k; j < std::min(ring_.count, k + 8); ++j) {
           const std::uint32_t half = (bits[(j - k) / 2] >> (16 * (j & 1))) & 0xFFFFU;
           const float unit = (static_cast<float>(half) + 0.5F) * 0x1p-15F - 1.0F;  // in (-1, 1)
+          if (readings_) {
+            port.distance_m[j] = with_noisy_reading(port.distance_m[j], unit);
+            continue;
+          }
           const float noisy = port.distance_m[j] + noise_ * unit * ring_.range_m;
           port.distance_m[j] = std::min(std::max(noisy, 0.0F), ring_.range_m);
         }
       }
     }
   }
+  float with_noisy_reading(float distance_m, float unit) const noexcept {
+    const double exact =
+        distance_m < ring_.range_m ? hal::argos_reading(*readings_, static_cast<double>(distance_m)) : 0.0;
+    const double noisy = std::min(exact + static_cast<double>(noise_ * unit), 1.0);
+    return noisy > 0.0 ? static_cast<float>(hal::argos_distance_m(*readings_, noisy)) : ring_.range_m;
+  }
 
   RayRing ring_;
   float noise_;
+  std::optional<hal::ArgosProximity> readings_;
   std::optional<FittedRays> fitted_;  // nothing: they are as their kind says
 };
 
 struct ProximityErrors {
   bool show_rays = false;
   double noise_level = 0.0;
+  std::string noise_of = "closeness";
   static ProximityErrors noisy() { return {.noise_level = 20 * 1e-3}; }
   void describe_always(hal::ParamVisitor& v) {
     v.flag("show_rays", show_rays, "Draw the rays in a view; no effect on readings.");
   }
   void describe(hal::ParamVisitor& v) {
-    v.number("noise_level", noise_level, hal::unit::none, {0.0, 1.0},
-             "Uniform noise of +-level on the closeness (0 nothing in range, 1 contact).");
+    static constexpr std::array<std::string_view, 2> kOf = {"closeness", "reading"};
+    if (hal::in_argos_file(v)) noise_of = "reading";
+    v.number("noise_level", noise_level, hal::unit::none, {0.0, 1.0}, "Uniform noise of +-level.");
+    v.choice("noise_of", noise_of, kOf,
+             "What it is on: the closeness (0 nothing in range, 1 contact), or ARGoS' reading, which is not linear in "
+             "the distance. Left out in an ARGoS file: the reading.");
   }
 };
 
 template <Level kLevel>
 BlockFactory<Sensor> make_proximity(const Element& element, Problems& problems, const DeviceSetup& setup) {
-  const double noise = read_options<LevelOptions<ProximityErrors, kLevel>>(element, problems).noise_level;
+  const auto errors = read_options<LevelOptions<ProximityErrors, kLevel>>(element, problems);
+  const double noise = errors.noise_level;
+  std::optional<hal::ArgosProximity> readings;
+  if (errors.noise_of == "reading") readings = hal::argos_proximity(element.name);
   const auto& part = *setup.kind.part<hal::ProximityPart>();
   const auto* const fitted = setup.kind.part<hal::FittedProximity>();
   if (fitted == nullptr || kLevel == Level::Ideal)
-    return [&part, noise](const BlockColumns&) { return std::make_unique<ProximitySensor>(part, noise, std::nullopt); };
+    return [&part, noise, readings](const BlockColumns&) {
+      return std::make_unique<ProximitySensor>(part, noise, readings, std::nullopt);
+    };
   if (const std::string flaw = FittedRays::flaw(*fitted, setup.tick_s); !flaw.empty())
     problems.push_back(problem_at(element, flaw));
-  const auto make = [&part, noise, fitted](const BlockColumns& columns) {
-    return std::make_unique<ProximitySensor>(part, noise, FittedRays(*fitted, columns));
+  const auto make = [&part, noise, readings, fitted](const BlockColumns& columns) {
+    return std::make_unique<ProximitySensor>(part, noise, readings, FittedRays(*fitted, columns));
   };
   return {make, FittedRays::columns()};
 }

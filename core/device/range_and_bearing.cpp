@@ -30,6 +30,8 @@ struct Hearing {
     v.number("noise_std_dev", noise_std_dev_m, hal::unit::m, hal::kNotNegative,
              "Standard deviation of the sender's apparent place, along x and y; where robots fly, along z too.");
     v.number("packet_drop_prob", packet_drop_prob, hal::unit::none, {0.0, 1.0}, "Probability that a message is lost.");
+    v.number("loss_probability", packet_drop_prob, hal::unit::none, {0.0, 1.0},
+             "The same, as ARGoS' e-puck plug-in names it.");
   }
 };
 
@@ -51,9 +53,10 @@ bool disc_blocks(double cx, double cy, double radius_m, double low_m, double hig
 /// nearest body on outwards, each adds its shadow, and a sender in the shadow of nearer ones is not heard. Other lines
 /// are followed from end to end. Where robots fly, few are near and no two at the same height: there each line is
 /// tested with every body that is near.
+template <class OfPort>
 class RabSensor final : public Sensor {
  public:
-  using Port = hal::RangeAndBearing;
+  using Port = OfPort;
   using Part = hal::RangeAndBearingPart;
   using Errors = Hearing;
   static constexpr std::string_view kMedium = RangeAndBearingMedium::kKind;
@@ -63,7 +66,7 @@ class RabSensor final : public Sensor {
       : options_(options), medium_(setup.medium_as<RangeAndBearingMedium>()), channel_(setup.channel) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
-    auto* receivers = static_cast<hal::RangeAndBearing*>(ports);
+    auto* receivers = static_cast<Port*>(ports);
     double farthest_m = 0.0;
     for (const RobotGroup& group : context.stores.groups) farthest_m = std::max(farthest_m, group.rab_range_m);
     const RobotGroup& first = context.stores.groups.front();
@@ -78,7 +81,7 @@ class RabSensor final : public Sensor {
     space_ = std::any_of(context.stores.groups.begin(), context.stores.groups.end(),
                          [](const RobotGroup& group) { return group.kind->flies(); });
     for (std::size_t i = 0; i < context.block.used; ++i) {
-      hal::RangeAndBearing& port = receivers[i];
+      Port& port = receivers[i];
       stamp(context, port);
       port.count = 0;
       port.dropped = 0;
@@ -157,7 +160,7 @@ class RabSensor final : public Sensor {
   }
 
   /// The nearest first: so each message is put behind those that are there.
-  void hear_all(const DeviceContext& context, std::size_t row, double farthest_m, hal::RangeAndBearing& port) noexcept {
+  void hear_all(const DeviceContext& context, std::size_t row, double farthest_m, Port& port) noexcept {
     const Bodies& b = context.stores.bodies;
     const double height_m = board_m(context.stores, row);
     if (near_.capacity() == 0) make_room(context.stores, farthest_m);
@@ -175,8 +178,7 @@ class RabSensor final : public Sensor {
     }
   }
 
-  void hear_in_shadows(const DeviceContext& context, std::size_t row, double farthest_m,
-                       hal::RangeAndBearing& port) noexcept {
+  void hear_in_shadows(const DeviceContext& context, std::size_t row, double farthest_m, Port& port) noexcept {
     const SpaceStores& stores = context.stores;
     const Bodies& b = stores.bodies;
     const double height_m = board_m(stores, row);
@@ -208,8 +210,7 @@ class RabSensor final : public Sensor {
   }
 
   /// False: so many are near that nothing was done.
-  bool hear_in_space(const DeviceContext& context, std::size_t row, double farthest_m,
-                     hal::RangeAndBearing& port) noexcept {
+  bool hear_in_space(const DeviceContext& context, std::size_t row, double farthest_m, Port& port) noexcept {
     const SpaceStores& stores = context.stores;
     const Bodies& b = stores.bodies;
     const double height_m = board_m(stores, row);
@@ -370,7 +371,7 @@ class RabSensor final : public Sensor {
 
   /// Takes the message in, unless an object is in between or it gets lost.
   void receive(const DeviceContext& context, std::size_t row, double height_m, const Sender& sender,
-               hal::RangeAndBearing& port) const noexcept {
+               Port& port) const noexcept {
     const SpaceStores& stores = context.stores;
     const Bodies& b = stores.bodies;
     if (stores.senses_really(row, sender.row, RealSense::Messages)) return;
@@ -392,15 +393,24 @@ class RabSensor final : public Sensor {
     }
     const double flat2 = wx * wx + wy * wy;
     const auto range = static_cast<float>(std::sqrt(flat2 + wz * wz));
-    if (port.count == hal::RangeAndBearing::kCapacity && range >= port.range_m[hal::RangeAndBearing::kCapacity - 1]) {
+    if (port.count == Port::kCapacity && range >= port.range_m[Port::kCapacity - 1]) {
       ++port.dropped;
       return;
     }
     const double bx = b.cos_h[row] * wx + b.sin_h[row] * wy;
     const double by = b.cos_h[row] * wy - b.sin_h[row] * wx;
-    port.insert(range, static_cast<float>(std::atan2(by, bx)),
-                wz == 0.0 ? 0.0F : static_cast<float>(std::atan2(wz, std::sqrt(flat2))), message.payload.data(),
-                message.size);
+    const float elevation = wz == 0.0 ? 0.0F : static_cast<float>(std::atan2(wz, std::sqrt(flat2)));
+    const auto bearing = static_cast<float>(std::atan2(by, bx));
+    if constexpr (Port::kPayload > hal::kRabPayloadMax) {
+      if (message.size > hal::kRabPayloadMax) {
+        std::array<std::uint8_t, Port::kPayload> whole{};
+        const LongPart& more = medium_.long_of(sender.row);
+        std::copy(more.begin(), more.end(), std::copy(message.payload.begin(), message.payload.end(), whole.begin()));
+        return port.insert(range, bearing, elevation, whole.data(), message.size);
+      }
+    }
+    const auto size = static_cast<std::uint8_t>(std::min<std::size_t>(message.size, hal::kRabPayloadMax));
+    port.insert(range, bearing, elevation, message.payload.data(), size);
   }
 
   bool lost(const DeviceContext& context, std::uint32_t receiver, std::uint32_t sender) const noexcept {
@@ -442,9 +452,10 @@ struct Sending {
   }
 };
 
+template <class OfPort>
 class RabActuator final : public Actuator {
  public:
-  using Port = hal::RangeAndBearingSend;
+  using Port = OfPort;
   using Part = hal::RangeAndBearingPart;
   using Errors = Sending;
   static constexpr std::string_view kMedium = RangeAndBearingMedium::kKind;
@@ -458,8 +469,10 @@ class RabActuator final : public Actuator {
   void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
     Broadcast* const broadcasts = medium_.publish(context.block);
     if (broadcasts == nullptr) return;
-    const auto* senders = static_cast<const hal::RangeAndBearingSend*>(ports);
-    const auto most = static_cast<std::uint8_t>(std::min<std::size_t>(context.group.rab_payload, hal::kRabPayloadMax));
+    const auto* senders = static_cast<const Port*>(ports);
+    constexpr std::size_t kMost = std::tuple_size_v<decltype(Port::payload)>;
+    const auto most = static_cast<std::uint8_t>(std::min<std::size_t>(context.group.rab_payload, kMost));
+    LongPart* const longer = kMost > hal::kRabPayloadMax ? medium_.publish_long(context.block) : nullptr;
     for (std::size_t i = 0; i < context.block.used; ++i) {
       const std::size_t row = context.block.first_row + i;
       Broadcast& out = broadcasts[i];
@@ -467,7 +480,11 @@ class RabActuator final : public Actuator {
       const bool sends = able && senders[i].sending && !fails(context, stores.bodies.entity[row]);
       out.size = sends ? std::min(senders[i].size, most) : Broadcast::kSilent;
       out.channel = channel_;
-      out.payload = senders[i].payload;
+      std::copy_n(senders[i].payload.begin(), hal::kRabPayloadMax, out.payload.begin());
+      if constexpr (kMost > hal::kRabPayloadMax) {
+        if (longer != nullptr)
+          std::copy(senders[i].payload.begin() + hal::kRabPayloadMax, senders[i].payload.end(), longer[i].begin());
+      }
       out.range_m = static_cast<float>(context.group.rab_range_m);
     }
   }
@@ -485,15 +502,26 @@ class RabActuator final : public Actuator {
 
 }  // namespace
 
+namespace {
+
+/// `Hears` and `Sends` are the devices of one form of the two ports.
+template <class Hears, class Sends>
+void add_boards(std::vector<DeviceType>& types) {
+  add_levels<Hears>(types, "Messages in range and in sight; noise and loss where asked for.",
+                    "Messages in range and in sight.", "Messages in range and in sight, some lost, places uncertain.");
+  types.push_back(device_type<Hears, Level::Default>("medium", "ARGoS' name for the default."));
+  add_levels<Sends>(types, "Broadcasts to the robots in range in the next tick; failures where asked for.",
+                    "Broadcasts to the robots in range in the next tick.",
+                    "Broadcasts to the robots in range in the next tick, but for some failures.");
+  types.push_back(device_type<Sends, Level::Default>("medium", "The default, as ARGoS' e-puck plug-in names it."));
+}
+
+}  // namespace
+
 std::vector<DeviceType> range_and_bearing_types() {
   std::vector<DeviceType> types;
-  add_levels<RabSensor>(types, "Messages in range and in sight; noise and loss where asked for.",
-                        "Messages in range and in sight.",
-                        "Messages in range and in sight, some lost, places uncertain.");
-  types.push_back(device_type<RabSensor, Level::Default>("medium", "ARGoS' name for the default."));
-  add_levels<RabActuator>(types, "Broadcasts to the robots in range in the next tick; failures where asked for.",
-                          "Broadcasts to the robots in range in the next tick.",
-                          "Broadcasts to the robots in range in the next tick, but for some failures.");
+  add_boards<RabSensor<hal::RangeAndBearing>, RabActuator<hal::RangeAndBearingSend>>(types);
+  add_boards<RabSensor<hal::RangeAndBearingMany>, RabActuator<hal::RangeAndBearingLongSend>>(types);
   return types;
 }
 

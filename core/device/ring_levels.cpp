@@ -2,9 +2,11 @@
 #include "core/device/each_robot.hpp"
 #include "core/device/field_ring.hpp"
 #include "core/device/types.hpp"
+#include "core/field/light/light.hpp"
 #include "core/random/random.hpp"
 #include "hal/device/cliff.hpp"
 #include "hal/device/ring_sensors.hpp"
+#include "hal/open_params.hpp"
 
 namespace tandem::core {
 namespace {
@@ -15,11 +17,24 @@ using LevelNoise = OneError<kLevelNoise>;
 /// ARGoS' switch for its view is accepted too.
 struct LightNoise : LevelNoise {
   bool show_rays = false;
+  std::string curve = "facing", written = {};
   static LightNoise noisy() { return {LevelNoise::noisy()}; }
   void describe_always(hal::ParamVisitor& v) {
+    static constexpr std::array<std::string_view, 2> kCurves = {"facing", "argos"};
+    if (hal::in_argos_file(v)) curve = "argos";
     v.flag("show_rays", show_rays, "Draw the rays in a view; no effect on readings.");
+    v.choice("curve", curve, kCurves,
+             "Reading of a lamp: by its brightness and the cosine of the angle to it, or as ARGoS' sensor of this name "
+             "has it. Left out in an ARGoS file: argos.");
   }
 };
+
+/// As the sensor's name in the file tells.
+LightCurve light_curve(const std::string& curve, std::string_view written) noexcept {
+  if (curve != "argos") return LightCurve::Facing;
+  const bool fades = written == "footbot_light" || written == "eyebot_light";
+  return fades ? LightCurve::ArgosFootbot : LightCurve::ArgosGeneric;
+}
 
 /// Adds noise to `count` levels and keeps them within [0, 1].
 void add_noise(const DeviceContext& context, std::size_t i, Stream stream, float noise, float* levels,
@@ -44,7 +59,8 @@ class LevelSensor final : public Sensor {
   static constexpr std::string_view kField = kOfLight ? "light" : "floor";
 
   LevelSensor(const DeviceSetup& setup, const Errors& errors, const BlockColumns&)
-      : ring_(*setup.fields->find(kField), setup.kind.part<Part>()->mounts),
+      : of_argos_(argos_light(errors)),
+        ring_(of_argos_ != nullptr ? *of_argos_ : *setup.fields->find(kField), setup.kind.part<Part>()->mounts),
         noise_(static_cast<float>(errors.amount)) {}
 
   void sense(const DeviceContext& context, void* ports) noexcept override {
@@ -60,6 +76,14 @@ class LevelSensor final : public Sensor {
   }
 
  private:
+  /// Null: it sees the world's own field.
+  static std::unique_ptr<Field> argos_light(const Errors& errors) {
+    if constexpr (kOfLight) {
+      const LightCurve curve = light_curve(errors.curve, errors.written);
+      if (curve != LightCurve::Facing) return std::make_unique<LightField>(curve);
+    }
+    return nullptr;
+  }
   static float* levels_of(hal::Light& port) noexcept { return port.level.data(); }
   static float* levels_of(hal::Ground& port) noexcept { return port.reflectance.data(); }
   static float* levels_of(hal::Cliff& port) noexcept { return port.reflectance.data(); }
@@ -77,6 +101,7 @@ class LevelSensor final : public Sensor {
     }
   }
 
+  std::unique_ptr<Field> of_argos_;  // of a sensor of light that reads as ARGoS' do
   FieldRing ring_;
   float noise_;
 };

@@ -12,18 +12,46 @@
 #include "core/space/mechanisms.hpp"
 #include "hal/angle.hpp"
 #include "hal/device/steppers.hpp"
+#include "hal/open_params.hpp"
 
 namespace tandem::core {
 namespace {
 
 // --- actuator ---
 
-/// ARGoS' three knobs: speed' = factor * (speed + bias) * (1 + noise).
+/// A number for each wheel: `name` for both, `name_left` and `name_right` for one.
+struct WheelPair {
+  double left = 0.0, right = 0.0;
+  void describe(hal::ParamVisitor& v, const std::string& name, const hal::Unit& bare, hal::Range range,
+                const std::string& doc) {
+    double both = left;
+    v.number(name, both, bare, range, doc);
+    if (both != left) left = right = both;
+    v.number(name + "_left", left, bare, range, "The same of the left wheel.");
+    v.number(name + "_right", right, bare, range, "The same of the right wheel.");
+  }
+  bool operator==(const WheelPair&) const = default;
+};
+
+/// speed' = factor * (speed + bias) * (1 + noise), and the model of ARGoS: then speed'' = f * (speed' + b), where b is
+/// normal and drawn once for each wheel, and f is normal and drawn for each wheel every tick.
 struct WheelErrors {
   double bias_left_m_s = 0.0, bias_right_m_s = 0.0;
   double factor_left = 1.0, factor_right = 1.0;
   double noise_std_dev = 0.0;
+  WheelPair bias_avg_m_s = {}, bias_stddev_m_s = {}, factor_avg = {1.0, 1.0}, factor_stddev = {};
+  bool stepped = true;
   static WheelErrors noisy() { return {.noise_std_dev = 50 * 1e-3}; }
+  bool as_argos() const noexcept {
+    return bias_avg_m_s != WheelPair{} || bias_stddev_m_s != WheelPair{} || factor_avg != WheelPair{1.0, 1.0} ||
+           factor_stddev != WheelPair{};
+  }
+  void describe_always(hal::ParamVisitor& v) {
+    if (hal::in_argos_file(v)) stepped = false;
+    v.flag("stepped", stepped,
+           "Stepper motors turn at the next speed that their timer has, as real ones do. Left out in an ARGoS file: "
+           "they turn as told.");
+  }
   void describe(hal::ParamVisitor& v) {
     v.number("bias_left", bias_left_m_s, hal::unit::cm_s, hal::kAny, "Added to the left wheel's speed while it turns.");
     v.number("bias_right", bias_right_m_s, hal::unit::cm_s, hal::kAny,
@@ -32,6 +60,12 @@ struct WheelErrors {
     v.number("factor_right", factor_right, hal::unit::none, hal::kNotNegative, "Multiplies the right wheel's speed.");
     v.number("noise_std_dev", noise_std_dev, hal::unit::none, {0.0, 1.0},
              "Standard deviation of each wheel's relative speed error, drawn every tick.");
+    bias_avg_m_s.describe(v, "bias_avg", hal::unit::m_s, hal::kAny,
+                          "Mean of a bias that every robot has of its own, added to each wheel while one turns.");
+    bias_stddev_m_s.describe(v, "bias_stddev", hal::unit::m_s, hal::kNotNegative, "Its standard deviation.");
+    factor_avg.describe(v, "factor_avg", hal::unit::none, hal::kAny,
+                        "Mean of a factor that is drawn for each wheel every tick.");
+    factor_stddev.describe(v, "factor_stddev", hal::unit::none, hal::kNotNegative, "Its standard deviation.");
   }
 };
 
@@ -66,7 +100,7 @@ class WheelActuator final : public Actuator {
   WheelActuator(const WheelErrors& errors, std::optional<SteppedSpeeds> stepped, std::optional<FittedDrive> fitted)
       : errors_(errors), stepped_(stepped), fitted_(std::move(fitted)) {
     exact_ = errors.bias_left_m_s == 0.0 && errors.bias_right_m_s == 0.0 && errors.factor_left == 1.0 &&
-             errors.factor_right == 1.0 && errors.noise_std_dev == 0.0;
+             errors.factor_right == 1.0 && errors.noise_std_dev == 0.0 && !errors.as_argos();
   }
 
   void act(const DeviceContext& context, SpaceStores& stores, const void* ports) noexcept override {
@@ -124,6 +158,18 @@ class WheelActuator final : public Actuator {
       left = errors_.factor_left * (left + errors_.bias_left_m_s) * (1.0 + errors_.noise_std_dev * noise[0]);
     if (right != 0.0)
       right = errors_.factor_right * (right + errors_.bias_right_m_s) * (1.0 + errors_.noise_std_dev * noise[1]);
+    if (errors_.as_argos() && (left != 0.0 || right != 0.0)) distort_as_argos(context, entity, left, right);
+  }
+  void distort_as_argos(const DeviceContext& context, std::uint32_t entity, double& left,
+                        double& right) const noexcept {
+    const auto own = draw(context.seed, entity, Stream::WheelBias, 0);
+    const auto now = draw(context.seed, entity, Stream::WheelNoise, context.tick, 1);
+    const auto bias = to_normal(own[0], own[1]);
+    const auto factor = to_normal(now[0], now[1]);
+    left = (errors_.factor_avg.left + errors_.factor_stddev.left * factor[0]) *
+           (left + errors_.bias_avg_m_s.left + errors_.bias_stddev_m_s.left * bias[0]);
+    right = (errors_.factor_avg.right + errors_.factor_stddev.right * factor[1]) *
+            (right + errors_.bias_avg_m_s.right + errors_.bias_stddev_m_s.right * bias[1]);
   }
 
   WheelErrors errors_;
@@ -205,7 +251,8 @@ BlockFactory<Actuator> make_wheels(const Element& element, Problems& problems, c
   if (part == nullptr || kLevel == Level::Ideal) {
     std::optional<SteppedSpeeds> stepped;
     const auto* const steppers = setup.kind.part<hal::SteppersPart>();
-    if (steppers != nullptr && kLevel != Level::Ideal) stepped.emplace(*steppers, setup.kind.drive()->wheel_radius_m);
+    if (steppers != nullptr && kLevel != Level::Ideal && errors.stepped)
+      stepped.emplace(*steppers, setup.kind.drive()->wheel_radius_m);
     return [errors, stepped](const BlockColumns&) {
       return std::make_unique<WheelActuator>(errors, stepped, std::nullopt);
     };
@@ -227,14 +274,15 @@ DeviceType wheels_type(std::string_view implementation, std::string_view summary
 // --- encoders ---
 
 struct EncoderErrors {
-  double vel_noise_m_s = 0.0;
-  double dist_noise_m = 0.0;
-  static EncoderErrors noisy() { return {.vel_noise_m_s = 100 * 1e-5, .dist_noise_m = 100 * 1e-6}; }
+  hal::Interval vel_noise_m_s = {};
+  hal::Interval dist_noise_m = {};
+  static EncoderErrors noisy() {
+    return {.vel_noise_m_s = hal::Interval::around(100 * 1e-5), .dist_noise_m = hal::Interval::around(100 * 1e-6)};
+  }
   void describe(hal::ParamVisitor& v) {
-    v.number("vel_noise_range", vel_noise_m_s, hal::unit::cm_s, hal::kNotNegative,
-             "Uniform noise of +-this on each speed.");
-    v.number("dist_noise_range", dist_noise_m, hal::unit::cm, hal::kNotNegative,
-             "Uniform noise of +-this on the distance rolled in each tick; it adds up.");
+    v.interval("vel_noise_range", vel_noise_m_s, hal::unit::cm_s, "Uniform noise on each speed.");
+    v.interval("dist_noise_range", dist_noise_m, hal::unit::cm,
+               "Uniform noise on the distance rolled in each tick; it adds up.");
   }
 };
 
@@ -255,7 +303,7 @@ class EncoderSensor final : public EachSensor<EncoderSensor, hal::WheelEncoders,
  public:
   using Part = hal::DifferentialDrive;
   static void prepare(BlockFactory<Sensor>& factory, const DeviceSetup&, const Errors& errors) {
-    if (errors.dist_noise_m > 0.0) factory.columns = {keeps<EncoderDrift>()};
+    if (!errors.dist_noise_m.empty()) factory.columns = {keeps<EncoderDrift>()};
   }
 
   EncoderSensor(const DeviceSetup& setup, const Errors& errors, const BlockColumns& columns)
@@ -271,7 +319,7 @@ class EncoderSensor final : public EachSensor<EncoderSensor, hal::WheelEncoders,
     port.left_m_s = static_cast<float>(b.left_m_s[row]);
     port.right_m_s = static_cast<float>(b.right_m_s[row]);
     if (hidden_rolls_ != nullptr) hide(hidden_rolls_[robot.i], port);
-    if (errors_.vel_noise_m_s > 0.0 || errors_.dist_noise_m > 0.0) add_noise(robot, port);
+    if (!errors_.vel_noise_m_s.empty() || !errors_.dist_noise_m.empty()) add_noise(robot, port);
   }
 
  private:
@@ -284,12 +332,12 @@ class EncoderSensor final : public EachSensor<EncoderSensor, hal::WheelEncoders,
 
   void add_noise(const RobotAt& robot, hal::WheelEncoders& port) const noexcept {
     const auto bits = robot.draw(Stream::EncoderNoise);
-    port.left_m_s += static_cast<float>(errors_.vel_noise_m_s * to_symmetric(bits[0]));
-    port.right_m_s += static_cast<float>(errors_.vel_noise_m_s * to_symmetric(bits[1]));
+    port.left_m_s += static_cast<float>(errors_.vel_noise_m_s.at(to_symmetric(bits[0])));
+    port.right_m_s += static_cast<float>(errors_.vel_noise_m_s.at(to_symmetric(bits[1])));
     if (drifts_ == nullptr) return;
     EncoderDrift& drift = drifts_[robot.i];
-    drift.left_m += errors_.dist_noise_m * to_symmetric(bits[2]);
-    drift.right_m += errors_.dist_noise_m * to_symmetric(bits[3]);
+    drift.left_m += errors_.dist_noise_m.at(to_symmetric(bits[2]));
+    drift.right_m += errors_.dist_noise_m.at(to_symmetric(bits[3]));
     port.left_m += drift.left_m;
     port.right_m += drift.right_m;
   }
@@ -300,10 +348,9 @@ class EncoderSensor final : public EachSensor<EncoderSensor, hal::WheelEncoders,
 
 // --- odometry ---
 
-constexpr ErrorText kOdometryErrors{
-    "dist_noise_range", 100 * 1e-6, hal::unit::cm, hal::kNotNegative,
-    "Uniform noise of +-this on the distance that each wheel rolled in a tick; it adds up."};
-using OdometryErrors = OneError<kOdometryErrors>;
+constexpr ErrorText kOdometryErrors{"dist_noise_range", 100 * 1e-6, hal::unit::cm, hal::kAny,
+                                    "Uniform noise on the distance that each wheel rolled in a tick; it adds up."};
+using OdometryErrors = OneInterval<kOdometryErrors>;
 
 /// Where odometry believes the robot to be.
 struct Reckoned {
@@ -345,10 +392,10 @@ class OdometrySensor final : public EachSensor<OdometrySensor, hal::Odometry, Od
     double rolled_right_m = right_m - r.right_m;
     r.left_m = left_m;
     r.right_m = right_m;
-    if (errors_.amount > 0.0) {
+    if (!errors_.amount.empty()) {
       const auto bits = robot.draw(Stream::OdometryNoise);
-      rolled_left_m += errors_.amount * to_symmetric(bits[0]);
-      rolled_right_m += errors_.amount * to_symmetric(bits[1]);
+      rolled_left_m += errors_.amount.at(to_symmetric(bits[0]));
+      rolled_right_m += errors_.amount.at(to_symmetric(bits[1]));
     }
     go(r, 0.5 * (rolled_left_m + rolled_right_m), (rolled_right_m - rolled_left_m) / wheel_base_m_);
     port.x_m = r.x_m;

@@ -58,14 +58,19 @@ hal::Result<Raster> Raster::from_png(const std::string& path, const RasterArea& 
     return hal::Error{"image '" + path + "' is damaged: " + image.message};
   Raster raster(area, image.width, image.height);
   std::vector<std::uint8_t> pixels(raster.columns_ * raster.lines_);
+  std::vector<hal::Rgb> colors(pixels.size());
+  bool grey = true;
   for (std::size_t line = 0; line < raster.lines_; ++line) {
     for (std::size_t column = 0; column < raster.columns_; ++column) {
       const std::uint8_t* p = &rgb[3 * ((raster.lines_ - 1 - line) * raster.columns_ + column)];
+      colors[line * raster.columns_ + column] = {p[0], p[1], p[2]};
+      grey = grey && p[0] == p[1] && p[1] == p[2];
       pixels[line * raster.columns_ + column] =
           static_cast<std::uint8_t>((299 * p[0] + 587 * p[1] + 114 * p[2] + 500) / 1000);
     }
   }
   raster.take(std::move(pixels));
+  if (!grey) raster.colors_ = std::make_shared<const std::vector<hal::Rgb>>(std::move(colors));
   return raster;
 }
 
@@ -88,14 +93,23 @@ Raster Raster::painted(const RasterArea& area, double pixels_per_m,
   return raster;
 }
 
-float Raster::at(double x_m, double y_m) const noexcept {
+std::size_t Raster::pixel_at(double x_m, double y_m) const noexcept {
   const auto cell = [](double offset, std::size_t count) {
     const auto last = static_cast<double>(count - 1);
     return static_cast<std::size_t>(offset > 0.0 ? std::min(offset, last) : 0.0);  // what is no number counts to cell 0
   };
   const std::size_t column = cell((x_m - min_x_m_) * columns_per_m_, columns_);
   const std::size_t line = cell((y_m - min_y_m_) * lines_per_m_, lines_);
-  return static_cast<float>((*pixels_)[line * columns_ + column]) * (1.0F / 255.0F);
+  return line * columns_ + column;
+}
+
+float Raster::at(double x_m, double y_m) const noexcept {
+  return static_cast<float>((*pixels_)[pixel_at(x_m, y_m)]) * (1.0F / 255.0F);
+}
+
+std::optional<hal::Rgb> Raster::color_at(double x_m, double y_m) const noexcept {
+  if (colors_ == nullptr) return std::nullopt;
+  return (*colors_)[pixel_at(x_m, y_m)];
 }
 
 }  // namespace tandem::core

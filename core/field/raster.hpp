@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "hal/result.hpp"
+#include "hal/rgb.hpp"
 
 namespace tandem::core {
 
@@ -22,7 +24,8 @@ class Raster {
   static constexpr double kMostPixels = 1e8;
 
   Raster() = default;
-  /// Lays the image over the whole rectangle, its top to the north. Colours become their luminance [ITU-R BT.601].
+  /// Lays the image over the whole rectangle, its top to the north. The values are the luminance [ITU-R BT.601] of its
+  /// colours, which are kept for pictures.
   static hal::Result<Raster> from_png(const std::string& path, const RasterArea& area);
   /// Asks `value(x, y)` for the middle of every pixel.
   static Raster painted(const RasterArea& area, double pixels_per_m,
@@ -31,6 +34,8 @@ class Raster {
   bool empty() const noexcept { return pixels_ == nullptr; }
   /// Where it has pixels: of the nearest.
   float at(double x_m, double y_m) const noexcept;
+  /// Nothing: there are no colours.
+  std::optional<hal::Rgb> color_at(double x_m, double y_m) const noexcept;
   std::size_t columns() const noexcept { return columns_; }
   std::size_t lines() const noexcept { return lines_; }
   /// Fingerprint of all pixels; 0: there are none.
@@ -38,17 +43,22 @@ class Raster {
   void remember(auto& archive) {
     std::vector<std::uint8_t> pixels = empty() ? std::vector<std::uint8_t>() : *pixels_;
     archive(min_x_m_, min_y_m_, columns_per_m_, lines_per_m_, columns_, lines_, pixels);
-    if (archive.reads() && !pixels.empty() && pixels.size() == columns_ * lines_) take(std::move(pixels));
+    if (!archive.reads() || pixels.empty() || pixels.size() != columns_ * lines_) return;
+    const std::uint64_t before = mark_;
+    take(std::move(pixels));
+    if (mark_ != before) colors_.reset();
   }
 
  private:
   Raster(const RasterArea& area, std::size_t columns, std::size_t lines);
   void take(std::vector<std::uint8_t> pixels);
+  std::size_t pixel_at(double x_m, double y_m) const noexcept;
 
   double min_x_m_ = 0.0, min_y_m_ = 0.0;
   double columns_per_m_ = 1.0, lines_per_m_ = 1.0;
   std::size_t columns_ = 0, lines_ = 0;
   std::shared_ptr<const std::vector<std::uint8_t>> pixels_;
+  std::shared_ptr<const std::vector<hal::Rgb>> colors_;  // null: all are grey
   std::uint64_t mark_ = 0;
 };
 

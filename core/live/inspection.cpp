@@ -105,6 +105,10 @@ class ParamLister final : public hal::ParamVisitor {
         list->add(inner);
       }
     } else {
+      if (param.name == hal::kArgosParam) {
+        *param.as<bool>() = element_.argos;
+        return;
+      }
       const std::string* const text = element_.attribute(param.name);
       to_.push_back({{"name", name},
                      {"value", text != nullptr ? written(param, *text) : default_of(param)},
@@ -127,6 +131,8 @@ class ParamLister final : public hal::ParamVisitor {
     if (const auto* const v = param.as<std::int64_t>(); v != nullptr) return *v;
     if (const auto* const v = param.as<bool>(); v != nullptr) return *v;
     if (const std::string* const v = param.text(); v != nullptr) return *v;
+    if (const auto* const v = param.as<hal::Interval>(); v != nullptr)
+      return hal::format_number(v->least / param.bare->to_si) + ":" + hal::format_number(v->most / param.bare->to_si);
     std::string all;
     for (const double v : *param.as<std::array<double, 3>>())
       all += (all.empty() ? "" : ",") + hal::format_number(v / param.bare->to_si);

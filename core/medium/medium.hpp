@@ -57,6 +57,10 @@ class RowMedium : public Medium {
     rows_.assign(heard && past > first ? past - first : 0, T{});
   }
 
+ protected:
+  std::size_t first_row() const noexcept { return first_row_; }
+  std::size_t rows() const noexcept { return rows_.size(); }
+
  private:
   std::size_t first_row_ = 0;  // of the first block that publishes; those of the last end the rows
   std::vector<T> rows_;

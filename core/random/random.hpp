@@ -53,6 +53,7 @@ enum class Stream : std::uint32_t {
   GyroscopeBias,
   TimeOfFlightNoise,
   CliffNoise,
+  WheelBias,
   Plugin = 255,  ///< of parts from outside, with a seed of their own: `own_seed`
 };
 

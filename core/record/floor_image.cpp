@@ -27,6 +27,9 @@ class ImageFloor final : public Field {
   double at(const SpaceStores& s, double x_m, double y_m, double /*z_m*/) const noexcept override {
     return image_->at((x_m - s.min_x_m) / (s.max_x_m - s.min_x_m), (y_m - s.min_y_m) / (s.max_y_m - s.min_y_m));
   }
+  std::optional<hal::Rgb> color(const SpaceStores& s, double x_m, double y_m) const noexcept override {
+    return image_->color_at((x_m - s.min_x_m) / (s.max_x_m - s.min_x_m), (y_m - s.min_y_m) / (s.max_y_m - s.min_y_m));
+  }
   std::uint64_t mark() const noexcept override { return mark_; }
   FieldGrid grid() const noexcept override { return {image_->columns, image_->lines}; }
 
@@ -38,7 +41,8 @@ class ImageFloor final : public Field {
 constexpr std::string_view kPngStart("\x89PNG\r\n\x1a\n", 8);
 constexpr std::size_t kHeaderBytes = 13;
 constexpr std::string_view kGrey8("\x08\x00\x00\x00\x00", 5);  // bits a pixel, grey, deflate, filters by line, one pass
-constexpr int kQuick = 1;                                      // of libdeflate's levels
+constexpr std::string_view kRgb8("\x08\x02\x00\x00\x00", 5);
+constexpr int kQuick = 1;  // of libdeflate's levels
 
 std::string be32(std::size_t value) {
   std::string bytes;
@@ -56,20 +60,34 @@ void append_chunk(std::string& png, std::string_view type, std::string_view data
   png += be32(data.size()) + body + be32(libdeflate_crc32(0, body.data(), body.size()));
 }
 
+/// As floors take it from images (core/field/raster.cpp).
+std::uint8_t luminance(std::uint8_t r, std::uint8_t g, std::uint8_t b) noexcept {
+  return static_cast<std::uint8_t>((299 * r + 587 * g + 114 * b + 500) / 1000);
+}
+
 const Field* floor_of(const SpaceStores& stores) noexcept {
   return stores.fields.find("floor");
 }
 
 }  // namespace
 
-double FloorImage::at(double east, double north) const noexcept {
+std::size_t FloorImage::pixel_at(double east, double north) const noexcept {
   const auto cell = [](double offset, std::size_t count) {
     const auto last = static_cast<double>(count - 1);
     return static_cast<std::size_t>(offset > 0.0 ? std::min(offset, last) : 0.0);
   };
   const std::size_t column = cell(east * static_cast<double>(columns), columns);
   const std::size_t line = cell(north * static_cast<double>(lines), lines);
-  return static_cast<double>(static_cast<float>(pixels[(lines - 1 - line) * columns + column]) * (1.0F / 255.0F));
+  return (lines - 1 - line) * columns + column;
+}
+
+double FloorImage::at(double east, double north) const noexcept {
+  return static_cast<double>(static_cast<float>(pixels[pixel_at(east, north)]) * (1.0F / 255.0F));
+}
+
+std::optional<hal::Rgb> FloorImage::color_at(double east, double north) const noexcept {
+  if (colors.empty()) return std::nullopt;
+  return colors[pixel_at(east, north)];
 }
 
 std::uint64_t floor_mark(const SpaceStores& stores) noexcept {
@@ -105,6 +123,7 @@ FloorImage floor_image(const SpaceStores& s) {
       const double x_m = s.min_x_m + (static_cast<double>(column) + 0.5) / static_cast<double>(grid.columns) * size_x_m;
       const double level = std::clamp(floor->at(s, x_m, y_m, 0.0), 0.0, 1.0);
       *pixel++ = static_cast<std::uint8_t>(std::lround(255.0 * level));
+      if (const auto color = floor->color(s, x_m, y_m)) image.colors.push_back(*color);
     }
   }
   return image;
@@ -112,10 +131,18 @@ FloorImage floor_image(const SpaceStores& s) {
 
 std::string png_of(const FloorImage& image) {
   std::string lines;
-  lines.reserve((image.columns + 1) * image.lines);
+  const bool grey = image.colors.size() != image.pixels.size();
+  lines.reserve(((grey ? 1 : 3) * image.columns + 1) * image.lines);
   for (std::size_t line = 0; line < image.lines; ++line) {
     lines += '\0';  // as it is, without a filter
-    lines.append(reinterpret_cast<const char*>(image.pixels.data() + line * image.columns), image.columns);
+    if (grey) {
+      lines.append(reinterpret_cast<const char*>(image.pixels.data() + line * image.columns), image.columns);
+      continue;
+    }
+    for (std::size_t column = 0; column < image.columns; ++column) {
+      const hal::Rgb color = image.colors[line * image.columns + column];
+      for (const std::uint8_t part : {color.r, color.g, color.b}) lines += static_cast<char>(part);
+    }
   }
   const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
       libdeflate_alloc_compressor(kQuick), &libdeflate_free_compressor);
@@ -123,7 +150,7 @@ std::string png_of(const FloorImage& image) {
   std::string packed(libdeflate_zlib_compress_bound(compressor.get(), lines.size()), '\0');
   packed.resize(libdeflate_zlib_compress(compressor.get(), lines.data(), lines.size(), packed.data(), packed.size()));
   std::string png(kPngStart);
-  append_chunk(png, "IHDR", be32(image.columns) + be32(image.lines) + std::string(kGrey8));
+  append_chunk(png, "IHDR", be32(image.columns) + be32(image.lines) + std::string(grey ? kGrey8 : kRgb8));
   append_chunk(png, "IDAT", packed);
   append_chunk(png, "IEND", "");
   return png;
@@ -133,14 +160,16 @@ hal::Result<FloorImage> floor_of_png(std::string_view png) {
   const hal::Error refused{"the floor is no PNG picture as records hold them"};
   const std::size_t body = kPngStart.size() + 8;  // of the header
   const std::size_t data = body + kHeaderBytes + 4;
-  if (png.size() < data + 8 || !png.starts_with(kPngStart) || png.substr(body + 8, kGrey8.size()) != kGrey8)
-    return refused;
+  if (png.size() < data + 8 || !png.starts_with(kPngStart)) return refused;
+  const std::string_view form = png.substr(body + 8, kGrey8.size());
+  if (form != kGrey8 && form != kRgb8) return refused;
+  const std::size_t bytes = form == kGrey8 ? 1 : 3;  // of a pixel
   const std::size_t columns = from_be32(png.substr(body)), lines = from_be32(png.substr(body + 4));
   const std::size_t packed = from_be32(png.substr(data));
   if (columns == 0 || lines == 0 || columns > FloorImage::kMostPixels || lines > FloorImage::kMostPixels / columns ||
       png.substr(data + 4, 4) != "IDAT" || packed > png.size() - data - 8)
     return refused;
-  std::string raw((columns + 1) * lines, '\0');
+  std::string raw((bytes * columns + 1) * lines, '\0');
   const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> decompressor(
       libdeflate_alloc_decompressor(), &libdeflate_free_decompressor);
   if (decompressor == nullptr || libdeflate_zlib_decompress(decompressor.get(), png.data() + data + 8, packed,
@@ -148,8 +177,13 @@ hal::Result<FloorImage> floor_of_png(std::string_view png) {
     return refused;
   FloorImage image{columns, lines, std::vector<std::uint8_t>(columns * lines)};
   for (std::size_t line = 0; line < lines; ++line) {
-    if (raw[line * (columns + 1)] != '\0') return refused;
-    std::copy_n(raw.data() + line * (columns + 1) + 1, columns, image.pixels.data() + line * columns);
+    const auto* from = reinterpret_cast<const std::uint8_t*>(raw.data()) + line * (bytes * columns + 1);
+    if (*from++ != 0) return refused;
+    if (bytes == 1) std::copy_n(from, columns, image.pixels.data() + line * columns);
+    for (std::size_t column = 0; bytes == 3 && column < columns; ++column, from += 3) {
+      image.pixels[line * columns + column] = luminance(from[0], from[1], from[2]);
+      image.colors.push_back({from[0], from[1], from[2]});
+    }
   }
   return image;
 }

@@ -1,14 +1,16 @@
-// Floors as pictures: a byte of grey a pixel, laid over the arena, for records and views.
+// Floors as pictures: a byte of grey a pixel, or three of colours, laid over the arena, for records and views.
 #pragma once
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/space/stores.hpp"
 #include "hal/result.hpp"
+#include "hal/rgb.hpp"
 
 namespace tandem::core {
 
@@ -18,8 +20,13 @@ struct FloorImage {
 
   std::size_t columns = 0, lines = 0;
   std::vector<std::uint8_t> pixels = {};
+  std::vector<hal::Rgb> colors = {};  ///< of the same pixels; none: they are grey
   /// Of the pixel at this place, as a part of the arena from its south-west corner: 0 black to 1 white.
   double at(double east, double north) const noexcept;
+  std::optional<hal::Rgb> color_at(double east, double north) const noexcept;
+
+ private:
+  std::size_t pixel_at(double east, double north) const noexcept;
 };
 
 /// Differs when the floor's shades do; 0: it is uniform. Cheap enough for every tick.

@@ -6,6 +6,7 @@ namespace tandem::core {
 
 using hal::cannot_hold;
 using hal::closest;
+using hal::count_ignored;
 using hal::did_you_mean;
 using hal::Element;
 using hal::ElementReader;
@@ -17,6 +18,8 @@ using hal::Problem;
 using hal::problem_at;
 using hal::Problems;
 using hal::read_settings;
+using hal::refuse_ignored;
 using hal::to_text;
+using hal::unread_at;
 
 }  // namespace tandem::core

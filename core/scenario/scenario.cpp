@@ -54,4 +54,20 @@ hal::Result<std::uint8_t> medium_number(const std::vector<MediumConfig>& media, 
                     did_you_mean(id, ids)};
 }
 
+std::vector<hal::ListedDevice> listed_devices(const ControllerConfig& config, const hal::Catalog& catalog, bool real) {
+  std::vector<hal::ListedDevice> all;
+  for (const hal::Role role : {hal::Role::Sensor, hal::Role::Actuator}) {
+    for (const DeviceChoice& choice : role == hal::Role::Sensor ? config.sensors : config.actuators) {
+      const auto* const port = catalog.find<hal::PortType>(hal::port_entry(choice.device, role));
+      if (port == nullptr || (real && choice.grown)) continue;
+      const bool instead = choice.grown && !all.empty() && all.back().port->name == port->grows;
+      if (instead)
+        all.back().port = port;
+      else
+        all.push_back({port, choice.options.name});
+    }
+  }
+  return all;
+}
+
 }  // namespace tandem::core

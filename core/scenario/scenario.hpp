@@ -13,6 +13,7 @@
 #include "core/scenario/element.hpp"
 #include "core/scenario/polygon.hpp"
 #include "hal/catalog.hpp"
+#include "hal/device_list.hpp"
 #include "hal/result.hpp"
 #include "hal/robot_kind.hpp"
 
@@ -38,6 +39,7 @@ struct DeviceChoice {
   std::string implementation;  ///< as written, "default" when absent
   Element options;
   std::uint8_t medium = 0;  ///< number of the medium that the options name, as `medium_number` gives it
+  bool grown = false;       ///< the device of the one before it with more room: for simulated robots
 };
 
 struct ControllerConfig {
@@ -356,6 +358,9 @@ const hal::RobotKind* find_kind(const Scenario& scenario, const hal::Catalog& ca
 std::vector<std::string> kind_names(const Scenario& scenario, const hal::Catalog& catalog);
 /// The catalog with these kinds, which must outlive it.
 hal::Catalog with_kinds(const hal::Catalog& catalog, const std::vector<KindConfig>& kinds);
+/// What a controller that takes whatever there is may take. Of a device and the same with more room one is listed: the
+/// latter, for a real robot the former.
+std::vector<hal::ListedDevice> listed_devices(const ControllerConfig& config, const hal::Catalog& catalog, bool real);
 /// The kind whose bridge drives real robots of that one.
 std::string bridged_as(const Scenario& scenario, const std::string& kind);
 

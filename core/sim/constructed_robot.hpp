@@ -75,17 +75,7 @@ class ConstructedRobot final : public hal::Robot, public hal::DeviceList {
   const hal::RobotKind& kind() const noexcept override { return *group_.kind; }
   std::uint64_t run_seed() const noexcept override { return run_seed_; }
   std::vector<hal::ListedDevice> devices() const override {
-    std::vector<hal::ListedDevice> listed;
-    const ControllerConfig& config = scenario_.controllers[group_.config];
-    const auto add = [&](const std::vector<DeviceChoice>& choices, hal::Role role) {
-      for (const DeviceChoice& choice : choices) {
-        const auto* const port = catalog_.find<hal::PortType>(hal::port_entry(choice.device, role));
-        if (port != nullptr) listed.push_back({port, choice.options.name});
-      }
-    };
-    add(config.sensors, hal::Role::Sensor);
-    add(config.actuators, hal::Role::Actuator);
-    return listed;
+    return listed_devices(scenario_.controllers[group_.config], catalog_, group_.item->bridge.has_value());
   }
   void* port(const hal::PortType& type) override { return take(type); }
 

@@ -26,6 +26,7 @@ void name_media(Scenario& scenario, const hal::Catalog& catalog, Problems& probl
     if (type == nullptr || type->medium.empty() || wanted == nullptr) return;
     const auto number = medium_number(scenario.media, type->medium, *wanted);
     if (!number.ok()) {
+      if (choice.grown) return;  // told of the one before it
       problems.push_back(problem_at(choice.options, "medium", number.error().message));
       return;
     }

@@ -178,7 +178,7 @@ bool RobotFactory::prepare_group(std::size_t g, Problems& problems) {
   group.factories = std::move(factories);
   for (Problem& one : found) {  // what groups share is wrong once
     const auto same = [&](const Problem& other) {
-      return other.file == one.file && other.line == one.line && other.message == one.message;
+      return other.file == one.file && (other.line == one.line || one.ignored) && other.message == one.message;
     };
     if (std::none_of(problems.begin(), problems.end(), same)) problems.push_back(std::move(one));
   }

@@ -81,8 +81,12 @@ void complete_devices(const hal::Catalog& catalog, std::vector<DeviceChoice>& ch
 
 void put_devices(Element& configuration, std::string_view list, const std::vector<DeviceChoice>& choices) {
   Element* there = child_of(configuration, list);
-  if (there == nullptr || there->children.size() != choices.size()) return;
-  for (std::size_t i = 0; i < choices.size(); ++i) there->children[i] = choices[i].options;
+  const auto of_file = std::count_if(choices.begin(), choices.end(), [](const DeviceChoice& c) { return !c.grown; });
+  if (there == nullptr || there->children.size() != static_cast<std::size_t>(of_file)) return;
+  auto at = there->children.begin();
+  for (const DeviceChoice& choice : choices) {
+    if (!choice.grown) *at++ = choice.options;
+  }
 }
 
 void complete_controllers(Scenario& scenario, hal::PluginLoader& loader) {

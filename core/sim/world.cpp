@@ -245,21 +245,32 @@ void World::Impl::report_trouble() {
 
 void World::Impl::write(std::uint32_t robot, hal::Severity severity, std::string_view text,
                         std::uint32_t left_out) noexcept {
-  const RobotEntity& entity = stores().robots[robot];
+  const std::string name = space.robot_name({robot, stores().robots[robot].generation});
   if (last_errors && severity == hal::Severity::Error)
-    return last_errors->note(number_of(robot), "robot '" + space.robot_name({robot, entity.generation}) + "'",
-                             at_tick() + ": " + std::string(text));
-  std::string message = hal::message_of(space.robot_name({robot, entity.generation}), tick, text, left_out);
-  if (!in_controllers) return options.log.write(severity, message);
-  said[entity.block].push_back({severity, std::move(message)});
+    return last_errors->note(number_of(robot), "robot '" + name + "'", at_tick() + ": " + std::string(text));
+  take_message(robot, {severity, hal::message_of(name, tick, text, left_out)});
+}
+
+void World::Impl::keep(std::uint32_t robot, hal::Severity severity, std::string_view text) noexcept {
+  const std::uint32_t generation = stores().robots[robot].generation;
+  take_message(robot, {severity, hal::message_of(space.robot_name({robot, generation}), tick, text, 0), true});
+}
+
+void World::Impl::take_message(std::uint32_t robot, Message message) {
+  if (!in_controllers) return report(message);
+  said[stores().robots[robot].block].push_back(std::move(message));
   any_said.store(true, std::memory_order_relaxed);
+}
+
+void World::Impl::report(const Message& message) const {
+  (message.excess ? options.excess_log : options.log).write(message.severity, message.text);
 }
 
 /// In the order of blocks and slots, for any number of threads.
 void World::Impl::report_messages() {
   if (!any_said.exchange(false, std::memory_order_relaxed)) return;
   for (std::vector<Message>& block : said) {
-    for (const Message& message : block) options.log.write(message.severity, message.text);
+    for (const Message& message : block) report(message);
     block.clear();
   }
 }

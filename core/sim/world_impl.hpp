@@ -115,6 +115,7 @@ struct Excess {
 struct Message {
   hal::Severity severity;
   std::string text;
+  bool excess = false;  ///< of a robot that says much: for what keeps all
 };
 
 struct World::Impl final : hal::RobotLog::Sink {
@@ -215,6 +216,10 @@ struct World::Impl final : hal::RobotLog::Sink {
   hal::TimeNs now_ns() const noexcept override { return hal::time_of_tick(tick, scenario.ticks_per_second); }
   void write(std::uint32_t robot, hal::Severity severity, std::string_view text,
              std::uint32_t left_out) noexcept override;
+  bool keeps() const noexcept override { return !options.excess_log.drops_all() && !options.log.drops_all(); }
+  void keep(std::uint32_t robot, hal::Severity severity, std::string_view text) noexcept override;
+  void take_message(std::uint32_t robot, Message message);
+  void report(const Message& message) const;
   void report_messages();
 
   // --- one tick ---

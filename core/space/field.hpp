@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "hal/archive.hpp"
+#include "hal/rgb.hpp"
 
 namespace tandem::core {
 
@@ -48,6 +50,11 @@ class Field {
   virtual void sample(const FieldPlaces& places, double* values) const noexcept = 0;
   /// At a point of W, however one looks.
   virtual double at(const SpaceStores& stores, double x_m, double y_m, double z_m) const noexcept = 0;
+
+  /// Its colour there, for pictures; nothing: grey, by its value.
+  virtual std::optional<hal::Rgb> color(const SpaceStores& /*stores*/, double /*x_m*/, double /*y_m*/) const noexcept {
+    return std::nullopt;
+  }
 
   /// Whether hooks paint it, at all.
   virtual bool painted_by_hooks() const noexcept { return false; }

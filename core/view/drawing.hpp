@@ -105,8 +105,9 @@ struct Drawing {
   std::vector<Sketch::Shape> shapes;  ///< that hooks and layers drew
   /// Reflectance at (x, y), 0 black to 1 white; empty: a uniform floor, which is not drawn.
   std::function<double(double, double)> floor;
-  std::uint64_t floor_mark = 0;       ///< differs when the floor does
-  double floor_pixels_per_m = 200.0;  ///< finer it is not
+  std::function<hal::Rgb(double, double)> floor_color;  ///< empty: it is grey
+  std::uint64_t floor_mark = 0;                         ///< differs when the floor does
+  double floor_pixels_per_m = 200.0;                    ///< finer it is not
 };
 
 /// `drawing` as an SVG document. Up to 20,000 robots are drawn with heading and lit LEDs; more of them as dots, in the

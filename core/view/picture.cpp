@@ -95,6 +95,10 @@ Drawing drawing_of(const Space& space, const PictureOptions& options) {
     if (const FieldGrid grid = floor->grid(); grid.columns > 0)
       drawing.floor_pixels_per_m = static_cast<double>(grid.columns) / space.arena_size_x_m();
     drawing.floor = [&space](double x_m, double y_m) { return space.floor(x_m, y_m); };
+    if (floor->color(space.stores(), space.arena_center_x_m(), space.arena_center_y_m()))
+      drawing.floor_color = [&space, floor](double x_m, double y_m) {
+        return floor->color(space.stores(), x_m, y_m).value_or(hal::kBlack);
+      };
   }
   add_robots(space, options, drawing);
   if (options.trails != nullptr) options.trails->add_to(drawing, space, options.ticks_done);

@@ -36,11 +36,13 @@ struct FloorGrid {
 std::string floor_picture(const Drawing& drawing, const PictureLook& look) {
   if (!drawing.floor) return {};
   const FloorGrid grid(drawing, look);
-  FloorImage image{static_cast<std::size_t>(grid.columns), static_cast<std::size_t>(grid.lines), {}};
+  FloorImage image{static_cast<std::size_t>(grid.columns), static_cast<std::size_t>(grid.lines)};
   for (int line = grid.lines - 1; line >= 0; --line) {
     for (int column = 0; column < grid.columns; ++column) {
       const double level = std::clamp(drawing.floor(grid.middle_x_m(column), grid.middle_y_m(line)), 0.0, 1.0);
       image.pixels.push_back(static_cast<std::uint8_t>(std::lround(255.0 * level)));
+      if (drawing.floor_color)
+        image.colors.push_back(drawing.floor_color(grid.middle_x_m(column), grid.middle_y_m(line)));
     }
   }
   Svg svg;
@@ -54,18 +56,28 @@ std::string floor_picture(const Drawing& drawing, const PictureLook& look) {
 void keep_floor(Drawing& drawing, const PictureLook& look) {
   if (!drawing.floor) return;
   const FloorGrid grid(drawing, look);
-  std::vector<float> levels;
-  for (int line = 0; line < grid.lines; ++line) {
-    for (int column = 0; column < grid.columns; ++column)
-      levels.push_back(static_cast<float>(drawing.floor(grid.middle_x_m(column), grid.middle_y_m(line))));
-  }
-  drawing.floor = [grid, levels = std::make_shared<const std::vector<float>>(std::move(levels))](double x_m,
-                                                                                                 double y_m) {
-    const auto place = [](double at, int most) { return std::clamp(static_cast<int>(std::floor(at)), 0, most - 1); };
-    const int column = place((x_m - grid.x_m) / grid.cell_m, grid.columns);
-    const int line = place((y_m - grid.y_m) / grid.cell_m, grid.lines);
-    return static_cast<double>((*levels)[static_cast<std::size_t>(line * grid.columns + column)]);
+  struct Kept {
+    FloorGrid grid;
+    std::vector<float> levels;
+    std::vector<hal::Rgb> colors;
+    std::size_t cell(double x_m, double y_m) const {
+      const auto place = [](double at, int most) { return std::clamp(static_cast<int>(std::floor(at)), 0, most - 1); };
+      const int column = place((x_m - grid.x_m) / grid.cell_m, grid.columns);
+      const int line = place((y_m - grid.y_m) / grid.cell_m, grid.lines);
+      return static_cast<std::size_t>(line * grid.columns + column);
+    }
   };
+  const auto kept = std::make_shared<Kept>(Kept{grid, {}, {}});
+  for (int line = 0; line < grid.lines; ++line) {
+    for (int column = 0; column < grid.columns; ++column) {
+      const double x_m = grid.middle_x_m(column), y_m = grid.middle_y_m(line);
+      kept->levels.push_back(static_cast<float>(drawing.floor(x_m, y_m)));
+      if (drawing.floor_color) kept->colors.push_back(drawing.floor_color(x_m, y_m));
+    }
+  }
+  if (drawing.floor_color)
+    drawing.floor_color = [kept](double x_m, double y_m) { return kept->colors[kept->cell(x_m, y_m)]; };
+  drawing.floor = [kept](double x_m, double y_m) { return static_cast<double>(kept->levels[kept->cell(x_m, y_m)]); };
 }
 
 }  // namespace tandem::core

@@ -1,5 +1,5 @@
-// Readings as controllers know them that were written for ARGoS 3: order of rings, curves of infrared sensors, the way
-// from a place relative to the robot to one in the world. Scripts in Lua and sources in C++ share them.
+// What controllers that were written for ARGoS 3 count in: the order of rings, the way from a place relative to the robot
+// to one in the world. Scripts in Lua and sources in C++ share it.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <numbers>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "hal/device/flight.hpp"
@@ -36,27 +35,6 @@ inline double signed_angle(double rad) noexcept {
   constexpr double kTwoPi = 2.0 * std::numbers::pi;
   const double turn = std::fmod(rad, kTwoPi);
   return turn > std::numbers::pi ? turn - kTwoPi : turn <= -std::numbers::pi ? turn + kTwoPi : turn;
-}
-
-/// From a distance within the range to a reading, 0 to 1.
-using Curve = double (*)(double distance_m) noexcept;
-
-/// Of the rings of foot-bot and eye-bot: 1 at contact.
-inline double ring_curve(double distance_m) noexcept {
-  return distance_m < 0.009889556 ? 1.0 : 0.0100527 / (distance_m + 0.000163144);
-}
-/// Of the e-puck's ring, fitted by ARGoS' authors: 0 beyond 5 cm.
-inline double epuck_curve(double distance_m) noexcept {
-  if (distance_m > 0.05) return 0.0;
-  return std::clamp((298.701 * distance_m - 36.8961) * distance_m + 1.08212, 0.0, 1.0);
-}
-/// Of the device that files name `proximity`.
-inline double plain_curve(double distance_m) noexcept {
-  return exp(-distance_m);
-}
-/// Of the device by the name that a file gives it.
-inline Curve proximity_curve(std::string_view written) noexcept {
-  return written == "proximity" ? &plain_curve : written == "epuck_proximity" ? &epuck_curve : &ring_curve;
 }
 
 /// Heading of a robot's body in the world.

@@ -43,11 +43,11 @@ struct OmniCameraPart {
 };
 
 /// Blobs seen by a camera that looks all around, nearest first; the farthest are dropped when there are more than
-/// `kCapacity`. A robot's own LEDs are not among them.
-struct OmnidirectionalCamera : Reading {
-  static constexpr std::string_view kName = "omnidirectional_camera";
+/// `kBlobs`. A robot's own LEDs are not among them.
+template <std::size_t kBlobs>
+struct BlobsAround : Reading {
   static constexpr std::string_view kDoc = "Coloured blobs all around, with distance and bearing.";
-  static constexpr std::size_t kCapacity = 64;
+  static constexpr std::size_t kCapacity = kBlobs;
 
   std::uint32_t count = 0;
   std::uint32_t dropped = 0;                   ///< seen beyond the capacity
@@ -76,8 +76,8 @@ struct OmnidirectionalCamera : Reading {
     set_color(at, c);
   }
   /// Adds the blobs of `other` that are not there: about the same colour within kSamePlace_m is the same light.
-  void merge(const OmnidirectionalCamera& other) noexcept {
-    const OmnidirectionalCamera own = *this;
+  void merge(const BlobsAround& other) noexcept {
+    const BlobsAround own = *this;
     for (std::size_t i = 0; i < other.count; ++i) {
       if (!own.has(other, i)) insert(other.distance_m[i], other.bearing_rad[i], other.color(i));
     }
@@ -95,7 +95,7 @@ struct OmnidirectionalCamera : Reading {
  private:
   static constexpr float kSamePlace_m = 0.02F;  // LEDs of a ring are farther apart
 
-  bool has(const OmnidirectionalCamera& other, std::size_t i) const noexcept {
+  bool has(const BlobsAround& other, std::size_t i) const noexcept {
     for (std::size_t k = 0; k < count; ++k) {
       const float x_m = distance_m[k] * static_cast<float>(hal::cos(static_cast<double>(bearing_rad[k])));
       const float y_m = distance_m[k] * static_cast<float>(hal::sin(static_cast<double>(bearing_rad[k])));
@@ -112,6 +112,16 @@ struct OmnidirectionalCamera : Reading {
     rgb[3 * i + 1] = c.g;
     rgb[3 * i + 2] = c.b;
   }
+};
+
+struct OmnidirectionalCamera : BlobsAround<64> {
+  static constexpr std::string_view kName = "omnidirectional_camera";
+};
+
+/// The same with more room.
+struct OmnidirectionalCameraMany : BlobsAround<512> {
+  static constexpr std::string_view kName = "omnidirectional_camera_many";
+  static constexpr std::string_view kGrows = OmnidirectionalCamera::kName;
 };
 
 /// Pose and optics of a camera with a lens.
@@ -170,12 +180,12 @@ struct CameraPart {
 };
 
 /// Blobs seen by a camera with a lens, in pixels from the upper left corner of its image: x to the right, y downwards.
-/// The nearest first; the farthest are dropped when there are more than `kCapacity`. A robot's own LEDs are not among
+/// The nearest first; the farthest are dropped when there are more than `kBlobs`. A robot's own LEDs are not among
 /// them.
-struct PerspectiveCamera : Reading {
-  static constexpr std::string_view kName = "perspective_camera";
+template <std::size_t kBlobs>
+struct BlobsInImage : Reading {
   static constexpr std::string_view kDoc = "Coloured blobs in an image, in pixels.";
-  static constexpr std::size_t kCapacity = 64;
+  static constexpr std::size_t kCapacity = kBlobs;
 
   std::uint32_t count = 0;
   std::uint32_t dropped = 0;    ///< seen beyond the capacity
@@ -202,8 +212,8 @@ struct PerspectiveCamera : Reading {
   }
   /// Adds the blobs of `other`, whose image has as many pixels, that are not there: about the same colour within
   /// kSamePlace_px is the same light.
-  void merge(const PerspectiveCamera& other) noexcept {
-    const PerspectiveCamera own = *this;
+  void merge(const BlobsInImage& other) noexcept {
+    const BlobsInImage own = *this;
     for (std::size_t i = 0; i < other.count; ++i) {
       if (!own.has(other, i)) append(other.x_px[i], other.y_px[i], other.color(i));
     }
@@ -222,7 +232,7 @@ struct PerspectiveCamera : Reading {
  private:
   static constexpr float kSamePlace_px = 4.0F;
 
-  bool has(const PerspectiveCamera& other, std::size_t i) const noexcept {
+  bool has(const BlobsInImage& other, std::size_t i) const noexcept {
     for (std::size_t k = 0; k < count; ++k) {
       const bool near =
           std::fabs(x_px[k] - other.x_px[i]) < kSamePlace_px && std::fabs(y_px[k] - other.y_px[i]) < kSamePlace_px;
@@ -230,6 +240,16 @@ struct PerspectiveCamera : Reading {
     }
     return false;
   }
+};
+
+struct PerspectiveCamera : BlobsInImage<64> {
+  static constexpr std::string_view kName = "perspective_camera";
+};
+
+/// The same with more room.
+struct PerspectiveCameraMany : BlobsInImage<512> {
+  static constexpr std::string_view kName = "perspective_camera_many";
+  static constexpr std::string_view kGrows = PerspectiveCamera::kName;
 };
 
 }  // namespace tandem::hal

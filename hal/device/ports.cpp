@@ -42,7 +42,8 @@ void register_ports(Registrar& registrar) {
           Odometry, Gyroscope, BaseGround, MotorGround, TurretDrive, TurretEncoder, GripperDrive, Gripper, ScannerDrive,
           DistanceScanner, OmnidirectionalCamera, PerspectiveCamera, UpperRingLeds, QuadrotorAttitude, FlightTask,
           FlightState, Altimeter, CameraLed, PanTiltDrive, PanTiltEncoder, TimeOfFlight, Cliff, Selector, Buttons,
-          Speaker>(registrar);
+          Speaker, RangeAndBearingMany, RangeAndBearingLongSend, OmnidirectionalCameraMany, PerspectiveCameraMany>(
+      registrar);
   add_parts<ProximityPart, LightPart, GroundPart, BaseGroundPart, MotorGroundPart, AccelerometerPart, GyroscopePart,
             MicrophonesPart, BatteryPart, RangeAndBearingPart, LedsPart, UpperLedsPart, BodyLedPart, FrontLedPart,
             CameraLedPart, TurretPart, GripperPart, ScannerPart, OmniCameraPart, CameraPart, HeadPart, AltimeterPart,

@@ -8,12 +8,14 @@
 #include <string>
 
 #include "hal/elementary.hpp"
+#include "hal/open_params.hpp"
 #include "hal/port.hpp"
 
 namespace tandem::hal {
 
 inline constexpr std::size_t kRabPayloadMax =
     10;  ///< bytes; the foot-bot's. An e-puck sends 2 unless its file says otherwise
+inline constexpr std::size_t kLongRabPayloadMax = 64;  ///< of the ports with more room
 
 /// The range-and-bearing board.
 struct RangeAndBearingPart {
@@ -32,8 +34,8 @@ struct RangeAndBearingPart {
   }
   void attributes(ParamVisitor& v) {
     v.number("rab_range", range_m, unit::m, {0.0, 1e4}, "Reach of range-and-bearing.");
-    v.integer("rab_data_size", payload, {0, static_cast<double>(kRabPayloadMax)},
-              "Bytes of a range-and-bearing message.");
+    const std::size_t most = in_argos_file(v) ? kLongRabPayloadMax : kRabPayloadMax;
+    v.integer("rab_data_size", payload, {0, static_cast<double>(most)}, "Bytes of a range-and-bearing message.");
   }
   /// A board.
   void appear(const RobotKind& kind, Appearance& look) const {
@@ -42,15 +44,15 @@ struct RangeAndBearingPart {
   }
 };
 
-/// Message to broadcast in this tick. Safe value: nothing.
-struct RangeAndBearingSend : Command {
-  static constexpr std::string_view kName = "range_and_bearing";
+/// Message of up to `kBytes` bytes to broadcast in this tick. Safe value: nothing.
+template <std::size_t kBytes>
+struct SentMessage : Command {
   static constexpr std::string_view kDoc = "The message broadcast to robots in range.";
   static constexpr bool kAnyValueIsSafe = true;  // who sends it looks at `size`
 
   bool sending = false;
   std::uint8_t size = 0;
-  std::array<std::uint8_t, kRabPayloadMax> payload{};
+  std::array<std::uint8_t, kBytes> payload{};
 
   /// Broadcasts one byte.
   void say(std::uint8_t byte) noexcept {
@@ -65,11 +67,22 @@ struct RangeAndBearingSend : Command {
   }
 };
 
-/// Messages received in this tick, nearest first; the farthest are dropped when there are more than `kCapacity`.
-struct RangeAndBearing : Reading {
+struct RangeAndBearingSend : SentMessage<kRabPayloadMax> {
   static constexpr std::string_view kName = "range_and_bearing";
+};
+
+/// The same for messages that are longer than those of real boards.
+struct RangeAndBearingLongSend : SentMessage<kLongRabPayloadMax> {
+  static constexpr std::string_view kName = "range_and_bearing_many";
+  static constexpr std::string_view kGrows = RangeAndBearingSend::kName;
+};
+
+/// Messages received in this tick, nearest first; the farthest are dropped when there are more than `kMessages`.
+template <std::size_t kMessages, std::size_t kBytes>
+struct HeardMessages : Reading {
   static constexpr std::string_view kDoc = "Messages received, with range and bearing of each sender.";
-  static constexpr std::size_t kCapacity = 16;
+  static constexpr std::size_t kCapacity = kMessages;
+  static constexpr std::size_t kPayload = kBytes;
 
   std::uint32_t count = 0;
   std::uint32_t dropped = 0;  ///< received beyond the capacity in this tick
@@ -77,9 +90,9 @@ struct RangeAndBearing : Reading {
   std::array<float, kCapacity> bearing_rad{};    ///< counter-clockwise from forward
   std::array<float, kCapacity> elevation_rad{};  ///< upwards from the horizontal
   std::array<std::uint8_t, kCapacity> size{};
-  std::array<std::uint8_t, kCapacity * kRabPayloadMax> payload{};
+  std::array<std::uint8_t, kCapacity * kBytes> payload{};
 
-  const std::uint8_t* message(std::size_t i) const noexcept { return payload.data() + i * kRabPayloadMax; }
+  const std::uint8_t* message(std::size_t i) const noexcept { return payload.data() + i * kBytes; }
 
   /// Inserts in order of range; drops the farthest when full.
   void insert(float range, float bearing, float elevation, const std::uint8_t* bytes, std::uint8_t n) noexcept {
@@ -95,12 +108,12 @@ struct RangeAndBearing : Reading {
     bearing_rad[at] = bearing;
     elevation_rad[at] = elevation;
     size[at] = n;
-    std::copy_n(bytes, std::min<std::size_t>(n, kRabPayloadMax), payload.data() + at * kRabPayloadMax);
+    std::copy_n(bytes, std::min<std::size_t>(n, kBytes), payload.data() + at * kBytes);
   }
   /// Adds the messages of `other` that are not there: the same bytes from a place within kSamePlace_m are the same
   /// message.
-  void merge(const RangeAndBearing& other) noexcept {
-    const RangeAndBearing own = *this;
+  void merge(const HeardMessages& other) noexcept {
+    const HeardMessages own = *this;
     for (std::size_t i = 0; i < other.count; ++i) {
       if (own.has(other, i)) continue;
       insert(other.range_m[i], other.bearing_rad[i], other.elevation_rad[i], other.message(i), other.size[i]);
@@ -115,13 +128,15 @@ struct RangeAndBearing : Reading {
         "count";
     f.add("elevation", elevation_rad, unit::rad, Frame::Body, Fusion::Union, "upwards").used_by = "count";
     f.add("size", size, unit::none, Frame::None, Fusion::Union, "bytes of payload").used_by = "count";
-    f.add("payload", payload, unit::none, Frame::None, Fusion::Union, "10 bytes a message").used_by = "count";
+    f.add("payload", payload, unit::none, Frame::None, Fusion::Union,
+          kBytes == kRabPayloadMax ? "10 bytes a message" : "64 bytes a message")
+        .used_by = "count";
   }
 
  private:
   static constexpr float kSamePlace_m = 0.05F;  // two boards cannot be so near: an e-puck is 0.07 m wide
 
-  bool has(const RangeAndBearing& other, std::size_t i) const noexcept {
+  bool has(const HeardMessages& other, std::size_t i) const noexcept {
     for (std::size_t k = 0; k < count; ++k) {
       if (size[k] != other.size[i] || !std::equal(message(k), message(k) + size[k], other.message(i))) continue;
       float apart2 = 0.0F;
@@ -144,8 +159,18 @@ struct RangeAndBearing : Reading {
     bearing_rad[to] = bearing_rad[from];
     elevation_rad[to] = elevation_rad[from];
     size[to] = size[from];
-    std::copy_n(payload.data() + from * kRabPayloadMax, kRabPayloadMax, payload.data() + to * kRabPayloadMax);
+    std::copy_n(payload.data() + from * kBytes, kBytes, payload.data() + to * kBytes);
   }
+};
+
+struct RangeAndBearing : HeardMessages<16, kRabPayloadMax> {
+  static constexpr std::string_view kName = "range_and_bearing";
+};
+
+/// The same with room for more and longer messages than real boards take: what scripts and controllers of ARGoS get.
+struct RangeAndBearingMany : HeardMessages<256, kLongRabPayloadMax> {
+  static constexpr std::string_view kName = "range_and_bearing_many";
+  static constexpr std::string_view kGrows = RangeAndBearing::kName;
 };
 
 }  // namespace tandem::hal

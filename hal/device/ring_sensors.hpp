@@ -18,11 +18,13 @@ struct Proximity : Reading {
   static constexpr std::size_t kCapacity = 24;  // the foot-bot's and eye-bot's number
 
   std::uint32_t count = 0;
-  float range_m = 0.0F;  ///< how far the sensors see; a sensor that sees nothing reads this
+  float range_m = 0.0F;  ///< how far the sensors see; a sensor that sees nothing reads this, or more with noise
   std::array<float, kCapacity> distance_m{};
 
   /// 0 with nothing in range, 1 at contact, linear between.
-  float closeness(std::size_t i) const noexcept { return range_m > 0.0F ? 1.0F - distance_m[i] / range_m : 0.0F; }
+  float closeness(std::size_t i) const noexcept {
+    return range_m > 0.0F ? std::max(0.0F, 1.0F - distance_m[i] / range_m) : 0.0F;
+  }
 
   void describe(FieldList& f) const {
     f.add("count", count, unit::none, Frame::None, Fusion::Real, "number of sensors");

@@ -6,6 +6,7 @@
 
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/brakes.hpp"
+#include "hal/device/cameras.hpp"
 #include "hal/device/leds.hpp"
 #include "hal/device/range_and_bearing.hpp"
 #include "hal/device/ring_sensors.hpp"
@@ -20,6 +21,7 @@ constexpr double kHeight_m = 0.086;
 constexpr double kWheelRadius_m = 0.0205;
 constexpr double kWheelBase_m = 0.053;
 constexpr double kForce_N = 1.5;
+constexpr double kMast_m = 0.122;
 constexpr double kStep_m = 2.0 * std::numbers::pi * kWheelRadius_m / 1000;  // a turn has 1000 steps: 20, gear 50:1
 
 constexpr double radians(double deg) {
@@ -138,6 +140,16 @@ LookPart shell() {
   all.push_back(round_piece("cylinder", kBoard, 0.0, 0.0, 0.03, 0.0815, 0.0835));
   all.push_back(piece("arrow", "#f3f5f2", {-0.01, -0.011, 0.0861}, {0.022, 0.011, 0.0866}));
   return look;
+}
+
+const ExtraPart& omnidirectional_camera() {
+  static constexpr ExtraPart extra{
+      kName, OmnidirectionalCamera::kName, [] {
+        return AnyPart(OmniCameraPart{.height_m = kMast_m,
+                                      .aperture_rad = radians(70),
+                                      .source = "ARGoS' separate e-puck plug-in: aperture and height"});
+      }};
+  return extra;
 }
 
 const RobotKind& kind() {

@@ -7,6 +7,8 @@ namespace tandem::hal::epuck {
 inline constexpr std::string_view kName = "e-puck";
 
 const RobotKind& kind();
+/// The camera under a mirror that some e-pucks carry on a mast.
+const ExtraPart& omnidirectional_camera();
 /// The look of body and wheels.
 LookPart shell();
 

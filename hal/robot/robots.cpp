@@ -12,6 +12,7 @@ namespace tandem::hal {
 void register_robots(Registrar& registrar) {
   for (const RobotKind* kind : {&epuck::kind(), &epuck2::kind(), &eyebot::kind(), &footbot::kind(), &thymio::kind()})
     registrar.add(*kind);
+  registrar.add(epuck::omnidirectional_camera());
   registrar.add(part_type<ShellPart>());
 }
 

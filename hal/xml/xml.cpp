@@ -15,8 +15,9 @@ class Converter {
   Converter(const std::string& file, Problems& problems) : file_(file), problems_(problems) {}
 
   /// `free`: somebody else's content, in which text may stand.
-  Element convert(const tinyxml2::XMLElement& from, bool free) {
+  Element convert(const tinyxml2::XMLElement& from, bool free, bool argos) {
     Element element;
+    element.argos = argos;
     element.name = from.Name();
     element.file = file_;
     element.line = from.GetLineNum();
@@ -26,17 +27,20 @@ class Converter {
     }
     for (const auto* node = from.FirstChild(); node != nullptr; node = node->NextSibling()) {
       if (const auto* child = node->ToElement(); child != nullptr) {
-        element.children.push_back(convert(*child, free));
+        element.children.push_back(convert(*child, free, argos));
       } else if (node->ToText() != nullptr && !free) {
         const std::string text = node->Value();
-        problem(node->GetLineNum(), "<" + element.name + "> holds the text '" + text.substr(0, 30) +
-                                        "', which means nothing; values stand in attributes, comments in <!-- -->");
+        Problem unread = unread_at(element, "<" + element.name + "> holds the text '" + text.substr(0, 30) +
+                                                "', which means nothing; values stand in attributes, comments in "
+                                                "<!-- -->");
+        unread.line = node->GetLineNum();
+        problems_.push_back(std::move(unread));
       }
     }
     return element;
   }
 
-  void problem(int line, std::string message) { problems_.push_back({file_, line, std::move(message), false}); }
+  void problem(int line, std::string message) { problems_.push_back({file_, line, std::move(message)}); }
 
  private:
   const std::string& file_;
@@ -165,7 +169,7 @@ std::optional<Element> read_xml_text(const std::string& text, const std::string&
     converter.problem(next->GetLineNum(),
                       std::string("a second root element <") + next->Name() + ">; everything belongs in one");
   }
-  return converter.convert(*root, false);
+  return converter.convert(*root, false, root->Name() == kArgosRoot);
 }
 
 std::string to_xml(const Element& element) {

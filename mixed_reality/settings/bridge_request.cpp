@@ -10,7 +10,9 @@ using bridges::BridgeType;
 
 std::vector<std::string> device_names(const std::vector<core::DeviceChoice>& choices) {
   std::vector<std::string> names;
-  for (const core::DeviceChoice& c : choices) names.push_back(c.device);
+  for (const core::DeviceChoice& c : choices) {
+    if (!c.grown) names.push_back(c.device);
+  }
   return names;
 }
 

@@ -106,9 +106,12 @@ TEST(Run, KeepsWhatControllersSayInItsLog) {
   ASSERT_EQ(run.wait(), 0) << run.errors();
   const std::string log = text_of(folder.path() / "run.log");
   EXPECT_EQ(log.find("info: robot 'ep' at tick 0: made\nwarning: robot 'ep' at tick 0: step 1\n"), 0U) << log;
-  EXPECT_NE(log.find("warning: robot 'ep' at tick 20: step 21 (9 messages before it were left out)\n"),
-            std::string::npos)
-      << log;
+  for (int step = 1; step <= 30; ++step) {
+    const std::string line =
+        "warning: robot 'ep' at tick " + std::to_string(step - 1) + ": step " + std::to_string(step);
+    EXPECT_NE(log.find(line + "\n"), std::string::npos) << "nothing is left out: " << line;
+  }
+  EXPECT_NE(run.errors().find("more messages are in run.log"), std::string::npos) << run.errors();
   EXPECT_NE(run.errors().find("robot 'ep' at tick 0: step 1"), std::string::npos);
   Tandem over({"run", "talk.xml", "--log", "talk.xml"}, folder.path());
   EXPECT_EQ(over.wait(), 1) << "a log would overwrite the experiment";

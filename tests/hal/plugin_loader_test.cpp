@@ -30,12 +30,28 @@ TEST_F(Loader, FindsALibraryByAnyOfItsSpellings) {
   const fs::path file = fs::weakly_canonical(kFolder / "libtest_hal_pair.so");
   for (const std::string& name :
        {std::string("test_hal_pair"), std::string("libtest_hal_pair"), std::string("libtest_hal_pair.so"),
-        std::string("test_hal_pair.so"), file.string(), (kFolder / "libtest_hal_pair").string(),
-        std::string("some/other/build/libtest_hal_pair"), std::string("/another/tree/libtest_hal_pair.so")}) {
+        std::string("test_hal_pair.so"), file.string(), (kFolder / "libtest_hal_pair").string()}) {
     const auto found = loader_.find(name);
     ASSERT_TRUE(found.ok()) << name << ": " << found.error().message;
     EXPECT_EQ(found.value(), file) << name;
   }
+}
+
+TEST_F(Loader, TakesNoLibraryThatOnlyHasTheNameOfTheOneThatIsAskedFor) {
+  for (const std::string& name :
+       {std::string("some/other/build/libtest_hal_pair"), std::string("/tree/libtest_hal_pair.so")})
+    EXPECT_THAT(error_of(name), AllOf(HasSubstr("library '" + name + "' is not there"),
+                                      HasSubstr((kFolder / "libtest_hal_pair.so").string()),
+                                      HasSubstr("library=\"libtest_hal_pair\", without a folder, takes it")));
+}
+
+TEST_F(Loader, SaysWhatToDoWithALibraryOfArgos) {
+  const fs::path file = fs::path(testing::TempDir()) / "libtest_of_argos.so";
+  fs::copy_file(kFolder / "libtest_hal_no_plugin.so", file, fs::copy_options::overwrite_existing);
+  EXPECT_THAT(error_of(file.string()), HasSubstr("is not a Tandem plug-in"));
+  std::ofstream(file, std::ios::app | std::ios::binary) << "_ZTIN5argos14CCI_ControllerE";
+  EXPECT_THAT(error_of(file.string()), AllOf(HasSubstr("was built for ARGoS 3"), HasSubstr("-DCMAKE_PREFIX_PATH=")));
+  fs::remove(file);
 }
 
 TEST_F(Loader, NamesEveryPlaceThatItLookedAt) {

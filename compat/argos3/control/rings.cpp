@@ -17,6 +17,7 @@
 #include <array>
 
 #include "compat/argos3/control/device.hpp"
+#include "hal/device/argos_curves.hpp"
 #include "hal/device/argos_readings.hpp"
 #include "hal/device/body_sensors.hpp"
 #include "hal/device/flight.hpp"
@@ -52,19 +53,20 @@ class ProximityOf final : public SensorOn<Cci, hal::Proximity> {
     const hal::Proximity& p = this->port();
     for (std::size_t i = 0; i < order_.size(); ++i) {
       const std::size_t own = order_[i];
-      const bool nothing = own >= p.count || p.distance_m[own] >= p.range_m;
-      value_of(this->m_tReadings[i]) = nothing ? 0.0 : curve_(static_cast<double>(p.distance_m[own]));
+      const bool nothing = own >= p.count || p.distance_m[own] == p.range_m;  // farther: a reading that is noise alone
+      value_of(this->m_tReadings[i]) =
+          nothing ? 0.0 : hal::argos_reading(curve_, static_cast<double>(p.distance_m[own]));
     }
   }
 
  private:
   void fit(const Fitting& fitting) override {
-    curve_ = units::proximity_curve(fitting.written);
+    curve_ = hal::argos_proximity(fitting.written);
     if (const auto* const part = fitting.kind.part<hal::ProximityPart>())
       fit_ring(this->m_tReadings, order_, part->mounts);
   }
   std::vector<std::size_t> order_;
-  units::Curve curve_ = nullptr;
+  hal::ArgosProximity curve_ = hal::ArgosProximity::Footbot;
 };
 
 template <class Cci>

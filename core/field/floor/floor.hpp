@@ -18,6 +18,9 @@ class FloorField final : public PointField<FloorField> {
   double at(const SpaceStores& /*stores*/, double x_m, double y_m, double /*z_m*/) const noexcept override {
     return static_cast<double>(raster_.empty() ? kGrey : raster_.at(x_m, y_m));
   }
+  std::optional<hal::Rgb> color(const SpaceStores& /*stores*/, double x_m, double y_m) const noexcept override {
+    return raster_.color_at(x_m, y_m);
+  }
   bool painted_by_hooks() const noexcept override { return pixels_per_m_ > 0.0; }
   bool unpainted() const noexcept override { return unpainted_; }
   void repaint() noexcept override { unpainted_ = true; }

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/scenario/field_type.hpp"
 #include "core/space/sight.hpp"
 #include "core/space/stores.hpp"
+#include "hal/elementary.hpp"
 
 namespace tandem::core {
 namespace {
@@ -27,6 +29,15 @@ void each_lamp(const SpaceStores& stores, double x_m, double y_m, double z_m, Se
     if (strength < 1e-4) continue;  // below a twelve-bit converter's resolution
     if (in_sight(stores, x_m, y_m, z_m, lamp.x_m, lamp.y_m, lamp.z_m)) see(lamp, strength);
   }
+}
+
+/// Reading of a foot-bot's sensor in ARGoS; the lamp's place is from the middle of the robot's base.
+double as_footbot(const FieldSpot& spot, double ahead_m, double aside_m, double above_m, double intensity) noexcept {
+  const double reach = std::sqrt(ahead_m * ahead_m + aside_m * aside_m + above_m * above_m) / intensity;
+  const double angle_rad =
+      hal::atan2(spot.look_x * aside_m - spot.look_y * ahead_m, spot.look_x * ahead_m + spot.look_y * aside_m);
+  const double part = 1.0 - std::fabs(angle_rad) * (2.0 / std::numbers::pi);
+  return reach > 2.5 || part < 0.0 ? 0.0 : hal::exp(-2.0 * reach) * part;
 }
 
 /// Single precision, as a reading has.
@@ -53,10 +64,15 @@ void LightField::sample(const FieldPlaces& places, double* values) const noexcep
         const FieldSpot& spot = places.spots[k];
         const double ahead = bx - spot.x_m;
         const double aside = by - spot.y_m;
+        if (curve_ == LightCurve::ArgosFootbot) {
+          values[k] = added(values[k], as_footbot(spot, bx, by, lamp.z_m - base_m, lamp.intensity));
+          continue;
+        }
         const double above = lamp.z_m - base_m - spot.z_m;
         const double flat2 = ahead * ahead + aside * aside;
         const double facing = (ahead * spot.look_x + aside * spot.look_y) / std::sqrt(std::max(flat2, 1e-12));
-        if (facing > 0.0) values[k] = added(values[k], strength_at(lamp, flat2 + above * above) * facing);
+        const double part = curve_ == LightCurve::ArgosGeneric ? 1.0 : facing;
+        if (facing > 0.0) values[k] = added(values[k], strength_at(lamp, flat2 + above * above) * part);
       }
     });
   }

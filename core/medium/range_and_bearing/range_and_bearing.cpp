@@ -1,5 +1,7 @@
 #include "core/medium/range_and_bearing/range_and_bearing.hpp"
 
+#include <algorithm>
+
 namespace tandem::core {
 namespace {
 
@@ -12,6 +14,13 @@ struct Settings {
 };
 
 }  // namespace
+
+void RangeAndBearingMedium::fit(const SpaceStores& stores) {
+  RowMedium::fit(stores);
+  const bool longer = std::any_of(stores.groups.begin(), stores.groups.end(),
+                                  [](const RobotGroup& group) { return group.rab_payload > hal::kRabPayloadMax; });
+  long_.assign(longer ? rows() : 0, LongPart{});
+}
 
 void register_range_and_bearing_medium(hal::Registrar& registrar) {
   static constexpr MediumType kType{

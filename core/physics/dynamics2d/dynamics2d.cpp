@@ -525,8 +525,12 @@ class Dynamics2d final : public Solver {
     double hop = std::min(hops_, kMostHops);
     if (!joints_.empty() || any_squeezed()) hop = std::max(hop, tick_s / kHoldingStep_s);
     for (const RobotGroup& group : s.groups) {
-      if (group.kind != nullptr)
-        hop = std::max(hop, wheels_of(*group.kind).max_speed_m_s * tick_s / (kLargestHop * group.kind->body.radius_m));
+      if (group.kind == nullptr) continue;
+      const hal::DifferentialDrive& wheels = wheels_of(*group.kind);
+      double most_m_s = wheels.limited() ? wheels.max_speed_m_s : 0.0;
+      for (std::size_t i = 0; !wheels.limited() && i < group.blocks.size(); ++i)
+        most_m_s = std::max(most_m_s, top_wheel_m_s(s, s.blocks[group.blocks[i]]));
+      hop = std::max(hop, most_m_s * tick_s / (kLargestHop * group.kind->body.radius_m));
     }
     return static_cast<int>(std::clamp(std::ceil(hop), 1.0, static_cast<double>(box2d::kMostSubSteps)));
   }

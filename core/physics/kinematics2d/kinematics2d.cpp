@@ -68,11 +68,10 @@ double hops(double speed_m_s, double radius_m, double tick_s) noexcept {
   return speed_m_s * tick_s / (kLargestHop * radius_m);
 }
 
-/// How many sub-steps keep turns and hops small at the robot's highest speed.
-int sub_steps(const hal::RobotKind& kind, double tick_s) noexcept {
-  const hal::DifferentialDrive& wheels = wheels_of(kind);
-  const double turn = 2.0 * wheels.max_speed_m_s / wheels.wheel_base_m * tick_s / kLargestTurn_rad;
-  const double hop = hops(wheels.max_speed_m_s, kind.body.radius_m, tick_s);
+/// How many sub-steps keep turns and hops small at this speed of a wheel.
+int sub_steps(const hal::RobotKind& kind, double wheel_m_s, double tick_s) noexcept {
+  const double turn = 2.0 * wheel_m_s / wheels_of(kind).wheel_base_m * tick_s / kLargestTurn_rad;
+  const double hop = hops(wheel_m_s, kind.body.radius_m, tick_s);
   return std::max(1, static_cast<int>(std::ceil(std::max(turn, hop))));
 }
 
@@ -253,7 +252,7 @@ void Kinematics2d::advance(const PhysicsContext& context) {
       const hal::RobotKind& kind = *stores.groups[block.group].kind;
       if (kind.flies()) continue;  // never this engine's
       const double wheel_base_m = wheels_of(kind).wheel_base_m;
-      const int steps = sub_steps(kind, context.tick_s);
+      const int steps = sub_steps(kind, top_wheel_m_s(stores, block), context.tick_s);
       if (any_too_fast(stores.bodies, block)) too_fast_in_.store(&stores, std::memory_order_relaxed);
       const std::size_t end = block.first_row + block.used;
       std::size_t row = block.first_row;

@@ -13,13 +13,13 @@
 namespace tandem::core {
 namespace {
 
+template <class Port>
 void all_around(const LayerView& now, Sketch& out) {
-  for_each_reading<hal::OmnidirectionalCamera, hal::OmniCameraPart>(
-      now, [&out](RobotId, const Pose& pose, const hal::OmniCameraPart& part, const hal::OmnidirectionalCamera& port,
-                  double opacity) {
+  for_each_reading<Port, hal::OmniCameraPart>(
+      now, [&out](RobotId, const Pose& pose, const hal::OmniCameraPart& part, const Port& port, double opacity) {
         const double reach_m = part.height_m * std::tan(part.aperture_rad);
         out.circle(center_of(pose), reach_m, {ink::kSky, 0.0, false, 0.3 * opacity});
-        const std::size_t count = std::min<std::size_t>(port.count, hal::OmnidirectionalCamera::kCapacity);
+        const std::size_t count = std::min<std::size_t>(port.count, Port::kCapacity);
         for (std::size_t i = 0; i < count; ++i) {
           const auto distance_m = static_cast<double>(port.distance_m[i]);
           const auto bearing_rad = static_cast<double>(port.bearing_rad[i]);
@@ -71,36 +71,37 @@ class Lens {
   double pan_rad_ = 0.0, cos_tilt_ = 1.0, sin_tilt_ = 0.0;
 };
 
+template <class Port>
 void through_lenses(const LayerView& now, Sketch& out) {
-  for_each_reading<hal::PerspectiveCamera, hal::CameraPart>(
-      now, [&](RobotId robot, const Pose& pose, const hal::CameraPart& part, const hal::PerspectiveCamera& port,
-               double opacity) {
-        const bool in_head = now.space.kind(robot).part<hal::HeadPart>() != nullptr;
-        const Lens lens(part, in_head ? now.space.state<HeadState>(robot) : nullptr, pose.z_m + part.mount().z_m);
-        const Sketch::Point from = point_of(pose, lens.lens());
-        const auto width = static_cast<double>(part.width_px);
-        const auto height = static_cast<double>(part.height_px);
-        const std::array corners = {point_of(pose, lens.end_of(0.0, 0.0)), point_of(pose, lens.end_of(width, 0.0)),
-                                    point_of(pose, lens.end_of(width, height)),
-                                    point_of(pose, lens.end_of(0.0, height))};
-        const Sketch::Pen faint{ink::kSky, 0.0, false, 0.3 * opacity};
-        out.polygon(corners, faint);
-        for (const Sketch::Point& corner : corners) out.line(from, corner, faint);
-        const std::size_t count = std::min<std::size_t>(port.count, hal::PerspectiveCamera::kCapacity);
-        for (std::size_t i = 0; i < count; ++i) {
-          const auto end = lens.end_of(static_cast<double>(port.x_px[i]), static_cast<double>(port.y_px[i]));
-          out.line(from, point_of(pose, end), {port.color(i), 0.0, false, opacity});
-        }
-      });
+  for_each_reading<Port, hal::CameraPart>(now, [&](RobotId robot, const Pose& pose, const hal::CameraPart& part,
+                                                   const Port& port, double opacity) {
+    const bool in_head = now.space.kind(robot).part<hal::HeadPart>() != nullptr;
+    const Lens lens(part, in_head ? now.space.state<HeadState>(robot) : nullptr, pose.z_m + part.mount().z_m);
+    const Sketch::Point from = point_of(pose, lens.lens());
+    const auto width = static_cast<double>(part.width_px);
+    const auto height = static_cast<double>(part.height_px);
+    const std::array corners = {point_of(pose, lens.end_of(0.0, 0.0)), point_of(pose, lens.end_of(width, 0.0)),
+                                point_of(pose, lens.end_of(width, height)), point_of(pose, lens.end_of(0.0, height))};
+    const Sketch::Pen faint{ink::kSky, 0.0, false, 0.3 * opacity};
+    out.polygon(corners, faint);
+    for (const Sketch::Point& corner : corners) out.line(from, corner, faint);
+    const std::size_t count = std::min<std::size_t>(port.count, Port::kCapacity);
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto end = lens.end_of(static_cast<double>(port.x_px[i]), static_cast<double>(port.y_px[i]));
+      out.line(from, point_of(pose, end), {port.color(i), 0.0, false, opacity});
+    }
+  });
 }
 
 class CameraViews final : public Layer {
  public:
-  static constexpr std::array<std::string_view, 2> kSensors = {hal::OmnidirectionalCamera::kName,
-                                                               hal::PerspectiveCamera::kName};
+  static constexpr std::array kSensors = {hal::OmnidirectionalCamera::kName, hal::OmnidirectionalCameraMany::kName,
+                                          hal::PerspectiveCamera::kName, hal::PerspectiveCameraMany::kName};
   void draw(const LayerView& now, Sketch& out) override {
-    all_around(now, out);
-    through_lenses(now, out);
+    all_around<hal::OmnidirectionalCamera>(now, out);
+    all_around<hal::OmnidirectionalCameraMany>(now, out);
+    through_lenses<hal::PerspectiveCamera>(now, out);
+    through_lenses<hal::PerspectiveCameraMany>(now, out);
   }
 };
 

@@ -12,25 +12,30 @@
 namespace tandem::core {
 namespace {
 
+template <class Port>
+void draw_links(const LayerView& now, Sketch& out) {
+  for_each_reading<Port, hal::RangeAndBearingPart>(
+      now, [&out](RobotId, const Pose& pose, const hal::RangeAndBearingPart& part, const Port& port, double opacity) {
+        const std::size_t count = std::min<std::size_t>(port.count, Port::kCapacity);
+        for (std::size_t i = 0; i < count; ++i) {
+          const double half_m = 0.5 * static_cast<double>(port.range_m[i]);
+          const auto bearing_rad = static_cast<double>(port.bearing_rad[i]);
+          const auto elevation_rad = static_cast<double>(port.elevation_rad[i]);
+          const double flat_m = half_m * std::cos(elevation_rad);
+          out.line(point_of(pose, {0.0, 0.0, part.height_m}),
+                   point_of(pose, {flat_m * std::cos(bearing_rad), flat_m * std::sin(bearing_rad),
+                                   part.height_m + half_m * std::sin(elevation_rad)}),
+                   {ink::kGreen, 0.0, false, 0.8 * opacity});
+        }
+      });
+}
+
 class Links final : public Layer {
  public:
-  static constexpr std::array<std::string_view, 1> kSensors = {hal::RangeAndBearing::kName};
+  static constexpr std::array kSensors = {hal::RangeAndBearing::kName, hal::RangeAndBearingMany::kName};
   void draw(const LayerView& now, Sketch& out) override {
-    for_each_reading<hal::RangeAndBearing, hal::RangeAndBearingPart>(
-        now, [&out](RobotId, const Pose& pose, const hal::RangeAndBearingPart& part, const hal::RangeAndBearing& port,
-                    double opacity) {
-          const std::size_t count = std::min<std::size_t>(port.count, hal::RangeAndBearing::kCapacity);
-          for (std::size_t i = 0; i < count; ++i) {
-            const double half_m = 0.5 * static_cast<double>(port.range_m[i]);
-            const auto bearing_rad = static_cast<double>(port.bearing_rad[i]);
-            const auto elevation_rad = static_cast<double>(port.elevation_rad[i]);
-            const double flat_m = half_m * std::cos(elevation_rad);
-            out.line(point_of(pose, {0.0, 0.0, part.height_m}),
-                     point_of(pose, {flat_m * std::cos(bearing_rad), flat_m * std::sin(bearing_rad),
-                                     part.height_m + half_m * std::sin(elevation_rad)}),
-                     {ink::kGreen, 0.0, false, 0.8 * opacity});
-          }
-        });
+    draw_links<hal::RangeAndBearing>(now, out);
+    draw_links<hal::RangeAndBearingMany>(now, out);
   }
 };
 

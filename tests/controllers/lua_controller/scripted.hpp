@@ -29,6 +29,7 @@ struct Script {
   int robots = 1;
   std::int64_t threads = 1;
   std::map<std::string, std::string> modules = {};  ///< other files beside the script
+  std::string root = "tandem";                      ///< or "argos-configuration"
 };
 
 /// A world of such robots in a row along x, half a metre apart. The folder of the script goes with it.
@@ -48,13 +49,14 @@ class Scripted {
       robots += "<" + script.robot + " id=\"r" + std::to_string(i) + "\" " + script.attributes + "><body position=\"" +
                 x + "," + y + ",0\"/><controller config=\"c\"/></" + script.robot + ">\n";
     }
-    const std::string text =
-        "<tandem><framework><experiment length=\"0\" ticks_per_second=\"10\" random_seed=\"3\"/>"
-        "</framework><controllers><lua_controller id=\"c\"><actuators>" +
-        script.actuators + "</actuators><sensors>" + script.sensors + "</sensors><params script=\"" + script.file +
-        "\" " + script.params + "/></lua_controller></controllers><arena size=\"40,40,6\" center=\"0,0,2\">" + robots +
-        script.more + "</arena><physics_engines><" + script.engine +
-        " id=\"e\"/></physics_engines><media><led id=\"leds\"/></media></tandem>";
+    const std::string text = "<" + script.root +
+                             "><framework><experiment length=\"0\" ticks_per_second=\"10\" random_seed=\"3\"/>"
+                             "</framework><controllers><lua_controller id=\"c\"><actuators>" +
+                             script.actuators + "</actuators><sensors>" + script.sensors +
+                             "</sensors><params script=\"" + script.file + "\" " + script.params +
+                             "/></lua_controller></controllers><arena size=\"40,40,6\" center=\"0,0,2\">" + robots +
+                             script.more + "</arena><physics_engines><" + script.engine +
+                             " id=\"e\"/></physics_engines><media><led id=\"leds\"/></media></" + script.root + ">";
     loader_ = std::make_unique<hal::PluginLoader>(std::vector<std::filesystem::path>{std::string(kBuildDir) + "/lib"},
                                                   catalog());
     core::WorldOptions options;
@@ -62,6 +64,7 @@ class Scripted {
     options.log = hal::Log([this](hal::Severity severity, std::string_view message) {
       said.emplace_back((severity == hal::Severity::Error ? "error: " : "") + std::string(message));
     });
+    options.excess_log = hal::Log([this](hal::Severity, std::string_view message) { kept.emplace_back(message); });
     core::Problems found;
     const auto scenario = core::read_experiment_text(text, (folder_ / "experiment.xml").string(), {}, catalog(), found);
     if (scenario) world = core::World::make(*scenario, *loader_, options, found);
@@ -105,13 +108,17 @@ class Scripted {
     return all;
   }
 
+  std::string text_of(const std::string& name) const {
+    std::ifstream file(folder_ / name);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
   void write(const std::string& name, const std::string& text) const {
     const std::filesystem::path path = folder_ / name;
     std::filesystem::create_directories(path.parent_path());
     std::ofstream(path) << text;
   }
 
-  std::vector<std::string> said;
+  std::vector<std::string> said, kept;
   std::string problems;
 
  private:

@@ -70,7 +70,7 @@ TEST(Reader, TakesEverythingThatAnArgosFileSays) {
   EXPECT_EQ(c.label, "epuck_diffusion");
   EXPECT_EQ(c.library, "build/controllers/libepuck_diffusion.so");
   EXPECT_EQ(c.line, 9);
-  ASSERT_EQ(c.sensors.size(), 4U);
+  ASSERT_EQ(c.sensors.size(), 5U) << "and range-and-bearing with more room";
   EXPECT_EQ(c.sensors[0].device, "proximity");
   EXPECT_EQ(c.sensors[0].implementation, "default");
   EXPECT_EQ(*c.sensors[0].options.attribute("noise_level"), "0.05");
@@ -78,7 +78,7 @@ TEST(Reader, TakesEverythingThatAnArgosFileSays) {
   EXPECT_EQ(c.sensors[1].device, "wheel_encoders");
   EXPECT_EQ(c.sensors[2].device, "light");
   EXPECT_EQ(c.sensors[2].implementation, "rot_z_only");
-  ASSERT_EQ(c.actuators.size(), 3U);
+  ASSERT_EQ(c.actuators.size(), 4U);
   EXPECT_EQ(c.actuators[0].device, "differential_steering");
   EXPECT_EQ(c.actuators[1].device, "leds");
   EXPECT_EQ(*c.params.attribute("velocity"), "5");
@@ -135,10 +135,11 @@ TEST(Reader, TakesEverythingThatAnArgosFileSays) {
   EXPECT_EQ(s.media[1].kind, "range_and_bearing");
   EXPECT_EQ(s.camera.name, "camera");
 
-  ASSERT_EQ(out.problems.size(), 2U) << out.text();
+  ASSERT_EQ(out.problems.size(), 3U) << out.text();
   EXPECT_EQ(to_text(out.problems[0]), "file.xml:6: warning: <profiling> is left out; times are in --report");
-  EXPECT_EQ(out.problems[1].line, 43);
-  EXPECT_TRUE(out.problems[1].warning);
+  EXPECT_EQ(out.problems[1].line, 32) << "no limit of wheels";
+  EXPECT_EQ(out.problems[2].line, 43);
+  for (const Problem& problem : out.problems) EXPECT_TRUE(problem.warning && !problem.ignored);
 }
 
 TEST(Reader, LooksForAControllerWithoutLibraryInTheOneOfItsName) {

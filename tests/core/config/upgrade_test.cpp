@@ -58,10 +58,12 @@ TEST(Upgrade, GivesArgosFilesOurNamesAndLeavesTheRestAsItStands) {
   const std::size_t sensors = expected.find("<sensors>");
   expected.replace(expected.find("<differential_steering", sensors), 22, "<wheel_encoders");
   EXPECT_EQ(made.value().text, expected);
-  EXPECT_THAT(made.value().changes,
-              ElementsAre("line 3: <argos-configuration> is now <tandem>", "line 3: it says that it is of version 1",
-                          "line 14: <epuck_leds> is now <leds>", "line 17: <epuck_proximity> is now <proximity>",
-                          "line 19: <differential_steering> is now <wheel_encoders>"));
+  EXPECT_THAT(
+      made.value().changes,
+      ElementsAre("line 3: <argos-configuration> is now <tandem>, whose defaults are others: see docs/from-argos.md",
+                  "line 3: it says that it is of version 1", "line 14: <epuck_leds> is now <leds>",
+                  "line 17: <epuck_proximity> is now <proximity>",
+                  "line 19: <differential_steering> is now <wheel_encoders>"));
 }
 
 TEST(Upgrade, ChangesNothingASecondTime) {
