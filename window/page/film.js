@@ -9,12 +9,16 @@ export class Film {
   constructor(view, name) {
     Object.assign(this, { view, name });
     this.recorder = null;
+    this.ends = false;  // as soon as there is something in it
+    this.bytes = 0;
     this.button = h('button', { 'aria-pressed': 'false', title: 'Records what the picture shows, until it is pressed again (w)', onclick: () => this.toggle() }, 'Film');
   }
 
   toggle() {
-    if (this.recorder !== null) this.recorder.stop();
-    else this.start();
+    if (this.recorder === null) return this.start();
+    if (this.bytes > 0 || this.ends) return this.recorder.stop();
+    this.ends = true;
+    return toast('The film ends with the first pictures that the browser has encoded; "Film" (w) gives it up.');
   }
 
   start() {
@@ -32,10 +36,15 @@ export class Film {
       this.button.textContent = `■ Film ${timeText((performance.now() - began) / 1000)}`;
       view.afterPicture.push(draw);
     };
-    recorder.ondataavailable = ({ data }) => parts.push(data);
+    [this.ends, this.bytes] = [false, 0];
+    recorder.ondataavailable = ({ data }) => {
+      parts.push(data);
+      this.bytes += data.size;
+      if (this.ends && data.size > 0 && recorder.state === 'recording') recorder.stop();
+    };
     recorder.onstop = () => {
       this.show(null);
-      if (parts.every((part) => part.size === 0)) return toast('The film is empty: it was ended before the browser had encoded its first picture.', 'error');
+      if (this.bytes === 0) return toast('The film is empty: it was ended before the browser had encoded its first picture.', 'error');
       return download(`${this.name()}.${form.includes('mp4') ? 'mp4' : 'webm'}`, new Blob(parts, { type: recorder.mimeType }));
     };
     this.show(recorder);

@@ -53,7 +53,7 @@ INIT
 chmod +x "$scratch/init"
 
 [[ -d /dev/shm && -w /dev/shm ]] && export TMPDIR=/dev/shm
-LD_PRELOAD=$registers timeout 120 linux.uml mem=512M rootfstype=hostfs rootflags=/ ro init="$scratch/init" uml_dir="$scratch/uml/" umid=guest \
+LD_PRELOAD=$registers timeout 300 linux.uml mem=512M rootfstype=hostfs rootflags=/ ro init="$scratch/init" uml_dir="$scratch/uml/" umid=guest \
   con=null con0=null,fd:1 ssl=null quiet loglevel=3 panic=-1 </dev/null >"$scratch/log" 2>"$scratch/errors" || true
 tr -d '\r' <"$scratch/log" | grep -v '^sysrq: \|^reboot: ' || true
 code=$(sed -n 's/^guest command exited: \([0-9]*\).*/\1/p' "$scratch/log" | tail -n 1)

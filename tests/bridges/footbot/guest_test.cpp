@@ -17,7 +17,7 @@ namespace {
 using BridgeSettings = aseba::NodeBridgeSettings<FootbotParts>;
 using FootbotBridge = aseba::NodeBridge<FootbotParts>;
 
-constexpr hal::TimeNs kLong = 20 * hal::kNsPerSecond;
+constexpr hal::TimeNs kLong = 60 * hal::kNsPerSecond;  // the guest shares a processor with whatever else runs
 
 /// Modules, and a bridge that reaches them by `link`; both are served by the test.
 struct OnTheKernelsBus {
