@@ -251,7 +251,8 @@ Result<PluginNote> parse(const Source& source) {
   if (!built && names_argos(source))
     return Error{
         "was built for ARGoS 3, not against Tandem. Build it again: in its build folder, "
-        "CMAKE_PREFIX_PATH=PREFIX cmake --fresh …, where PREFIX is lib/tandem of an installation or build/release/lib of "
+        "CMAKE_PREFIX_PATH=PREFIX cmake --fresh …, where PREFIX is lib/tandem of an installation or build/release/lib "
+        "of "
         "a checkout; and link it with argos3core_simulator (docs/from-argos-cpp.md)"};
   if (!built)
     return Error{

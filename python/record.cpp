@@ -95,7 +95,8 @@ py::dict tables(const std::string& path, const std::string& table, std::vector<s
   hal::Status done;
   {
     const py::gil_scoped_release unlocked;
-    auto opened = core::RecordTables::open({path, table, std::move(fields), std::move(entities), from, until, every, {}});
+    auto opened =
+        core::RecordTables::open({path, table, std::move(fields), std::move(entities), from, until, every, {}});
     done = opened.ok() ? opened.value().write(arrays) : hal::Status(opened.error());
   }
   expect(done);

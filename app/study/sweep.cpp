@@ -199,7 +199,10 @@ struct Tally {
   std::vector<FailedRuns> causes;  ///< the first few
   bool more_causes = false;
 
-  void note_failed(const study::FinishedRun& run) {
+  void note(const study::FinishedRun& run) {
+    ++made;
+    cpu_s += run.outcome.cpu_s;
+    if (run.outcome.done) return;
     ++failed;
     std::string cause = core::cause_of(run.outcome.failure);
     const auto known = std::ranges::find(causes, cause, &FailedRuns::cause);
@@ -288,6 +291,14 @@ int end_sweep(const SweepOptions& options, const study::Design& design, const st
   return tally.failed + tally.failed_before > 0 ? kFailedRunning : kDone;
 }
 
+study::RunRow row_of(const study::FinishedRun& run, const study::Design& design, const core::Scenario& scenario,
+                     std::int64_t version) {
+  return {run.plan.number, design.study().experiments[run.plan.experiment].name,
+          run.plan.seed,   design.values(run.plan.point),
+          version,         1.0 / static_cast<double>(scenario.ticks_per_second),
+          run.outcome};
+}
+
 int sweep(const SweepOptions& options) {
   const auto study = read_study_or_complain(options.study);
   if (!study) return kBadInput;
@@ -334,14 +345,8 @@ int sweep(const SweepOptions& options) {
       rows.clear();
       for (const study::FinishedRun& run : finished) {
         watch.look_at(run);
-        const core::Scenario& scenario = (*experiments)[run.plan.experiment];
-        rows.push_back({run.plan.number, study->experiments[run.plan.experiment].name, run.plan.seed,
-                        design.values(run.plan.point), work->version,
-                        1.0 / static_cast<double>(scenario.ticks_per_second), run.outcome});
-        ++tally.made;
-        tally.cpu_s += run.outcome.cpu_s;
-        if (run.outcome.done) continue;
-        tally.note_failed(run);
+        rows.push_back(row_of(run, design, (*experiments)[run.plan.experiment], work->version));
+        tally.note(run);
       }
       return work->table->add(rows);
     };

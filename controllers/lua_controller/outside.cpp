@@ -236,7 +236,7 @@ int of_the_program(lua_State* L) {
   return luaL_error(L, "os.exit and os.setlocale are not there: they would end or change the whole run");
 }
 
-constexpr luaL_Reg kCode[] = {{"require", &require}, {"dofile", &do_file}, {"loadfile", &load_file},
+constexpr luaL_Reg kCode[] = {{"require", &require}, {"dofile", &do_file},  {"loadfile", &load_file},
                               {"load", &load},       {"loadstring", &load}, {nullptr, nullptr}};
 constexpr luaL_Reg kOs[] = {{"clock", &os_clock}, {"time", &os_time}, {nullptr, nullptr}};
 

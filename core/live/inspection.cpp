@@ -9,6 +9,7 @@
 #include "core/record/scene_json.hpp"
 #include "core/space/stores.hpp"
 #include "hal/element.hpp"
+#include "hal/open_params.hpp"
 #include "hal/unit.hpp"
 
 namespace tandem::core {

@@ -1,5 +1,5 @@
-// What controllers that were written for ARGoS 3 count in: the order of rings, the way from a place relative to the robot
-// to one in the world. Scripts in Lua and sources in C++ share it.
+// What controllers that were written for ARGoS 3 count in: the order of rings, the way from a place relative to the
+// robot to one in the world. Scripts in Lua and sources in C++ share it.
 #pragma once
 #include <algorithm>
 #include <array>

@@ -1,6 +1,4 @@
 // CRandom, on hal::Random.
-#include "hal/poisson.hpp"
-
 #include <argos3/core/utility/math/rng.h>
 #include <cmath>
 #include <deque>
@@ -10,6 +8,7 @@
 
 #include "compat/argos3/facade/context.hpp"
 #include "hal/elementary.hpp"
+#include "hal/poisson.hpp"
 
 namespace argos {
 

@@ -47,10 +47,12 @@ class ArgosWorld {
                 ",0\"/><controller config=\"c\"/></" + a.robot + ">\n";
     const std::string text =
         "<tandem><framework><experiment length=\"0\" ticks_per_second=\"10\" random_seed=\"3\"/></framework>"
-        "<controllers><" + a.label + " id=\"c\" library=\"" + a.library + "\"><actuators>" + a.actuators +
-        "</actuators><sensors>" + a.sensors + "</sensors>" + a.params + "</" + a.label +
+        "<controllers><" +
+        a.label + " id=\"c\" library=\"" + a.library + "\"><actuators>" + a.actuators + "</actuators><sensors>" +
+        a.sensors + "</sensors>" + a.params + "</" + a.label +
         "></controllers><arena size=\"40,40,6\" center=\"5,5,2\">" + robots + a.more + "</arena><physics_engines><" +
-        a.engine + " id=\"e\"/></physics_engines><media><led id=\"leds\"/><range_and_bearing id=\"rab\"/></media></tandem>";
+        a.engine +
+        " id=\"e\"/></physics_engines><media><led id=\"leds\"/><range_and_bearing id=\"rab\"/></media></tandem>";
     loader_ = std::make_unique<hal::PluginLoader>(std::vector<std::filesystem::path>{std::string(kBuildDir) + "/lib"},
                                                   argos_catalog());
     core::WorldOptions options;

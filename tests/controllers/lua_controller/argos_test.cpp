@@ -41,7 +41,8 @@ TEST(ArgosScripts, GetTruthValuesFloatsAndBytesThatWrap) {
 
 /// An e-puck's sensor at +17 degrees, the first, looks at a wall: the ray is longer than the gap by 1 / cos 17°.
 std::string proximity_at(double gap_m, const std::string& root, const std::string& device) {
-  Script script = argos("function step() log(string.format('%.4f', robot.proximity[1].value or robot.proximity[1])) end");
+  Script script =
+      argos("function step() log(string.format('%.4f', robot.proximity[1].value or robot.proximity[1])) end");
   script.root = root;
   script.sensors = device;
   const double x_m = -5.0 + 0.035 * 0.956304755963035 + gap_m + 0.05;  // of the wall, which is 0.1 thick
@@ -147,7 +148,8 @@ TEST(ArgosScripts, DriveAsFastAsTheyAreTold) {
     script.engine = engine;
     Scripted world(script);
     world.run(11);
-    EXPECT_NEAR(world.world->space().pose(world.world->space().find_robot("r0")).x_m, -4.0, engine == "dynamics2d" ? 0.1 : 1e-9)
+    EXPECT_NEAR(world.world->space().pose(world.world->space().find_robot("r0")).x_m, -4.0,
+                engine == "dynamics2d" ? 0.1 : 1e-9)
         << engine;
     EXPECT_EQ(world.world->incidents().commands_clamped, 0U);
     EXPECT_THAT(world.problems, HasSubstr("have no limit"));
@@ -164,7 +166,8 @@ TEST(ArgosScripts, HaveArgosErrorsOfWheels) {
     end
     function destroy() log(string.format("%.6f %.6f", sum / n, squares / n - (sum / n) ^ 2)) end)");
   script.sensors = "<differential_steering/>";
-  script.actuators = R"(<differential_steering bias_avg="0.02" bias_stddev="0.01" factor_avg="0.5" factor_stddev_left="0.1"/>)";
+  script.actuators =
+      R"(<differential_steering bias_avg="0.02" bias_stddev="0.01" factor_avg="0.5" factor_stddev_left="0.1"/>)";
   script.robots = 200;
   Scripted world(script);
   world.run(100);
@@ -200,7 +203,8 @@ TEST(ArgosScripts, TakeRangesOfErrors) {
   world.run(3000);
   world.world.reset();
   double least = 0.0, most = 0.0;
-  ASSERT_EQ(std::sscanf(world.said.back().substr(world.said.back().find(": ") + 2).c_str(), "%lf %lf", &least, &most), 2);
+  ASSERT_EQ(std::sscanf(world.said.back().substr(world.said.back().find(": ") + 2).c_str(), "%lf %lf", &least, &most),
+            2);
   EXPECT_NEAR(least, -0.1, 0.001);
   EXPECT_NEAR(most, 0.2, 0.001);
   script.sensors = R"(<differential_steering vel_noise_range="0.2:-0.1"/>)";

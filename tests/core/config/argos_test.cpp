@@ -6,7 +6,6 @@
 
 #include "hal/device/cameras.hpp"
 #include "hal/device/range_and_bearing.hpp"
-
 #include "tests/core/config/reading.hpp"
 
 namespace tandem::core {
@@ -31,7 +30,8 @@ std::string file(const std::string& root) {
 <distribute><position method="uniform" min="-1,-1,0" max="1,1,0"/>
 <orientation method="constant" values="0,0,0" min="1,1,1"/><entity quantity="2"><e-puck id=""><controller config="w"/></e-puck></entity></distribute>
 </arena>
-</)" + root + ">\n";
+</)" + root +
+         ">\n";
 }
 
 std::vector<int> lines_of(const Problems& problems) {
@@ -67,13 +67,15 @@ TEST(ArgosFiles, AreRefusedForTheSameWhenAskedTo) {
 TEST(ArgosFiles, OfTandemsOwnRootGetErrors) {
   const Outcome out = read(file("tandem"));
   EXPECT_FALSE(out.scenario);
-  const auto errors = std::count_if(out.problems.begin(), out.problems.end(), [](const Problem& p) { return !p.warning; });
+  const auto errors =
+      std::count_if(out.problems.begin(), out.problems.end(), [](const Problem& p) { return !p.warning; });
   EXPECT_EQ(errors, 9) << out.text();
 }
 
 TEST(ArgosFiles, StillHaveErrorsWhereArgosHasThem) {
   std::string text = file("argos-configuration");
-  text.replace(text.find("<e-puck id=\"a\""), 14, "<kilobot id=\"k\"><body position=\"0,1,0\"/></kilobot><e-puck id=\"a\"");
+  text.replace(text.find("<e-puck id=\"a\""), 14,
+               "<kilobot id=\"k\"><body position=\"0,1,0\"/></kilobot><e-puck id=\"a\"");
   text.replace(text.find("<proximity/>"), 12, "<rab_camera/>");
   text.replace(text.find("length=\"10\""), 11, "length=\"long\"");
   const Outcome out = read(text);
@@ -97,7 +99,8 @@ TEST(ArgosFiles, LimitNoWheelsButThoseOfRealRobots) {
   ASSERT_NE(s.robots.at(0).own_kind, nullptr);
   EXPECT_FALSE(s.robots[0].own_kind->drive()->limited());
   EXPECT_TRUE(s.robots.at(1).own_kind == nullptr || s.robots[1].own_kind->drive()->limited());
-  EXPECT_THAT(out.text(), HasSubstr("the wheels of <e-puck> have no limit, as in ARGoS; those of a real one turn with"));
+  EXPECT_THAT(out.text(),
+              HasSubstr("the wheels of <e-puck> have no limit, as in ARGoS; those of a real one turn with"));
   text.replace(text.find("<e-puck id=\"a\""), 14, "<e-puck id=\"a\" max_speed=\"5 cm/s\"");
   EXPECT_DOUBLE_EQ(read(text).good().robots.at(0).own_kind->drive()->max_speed_m_s, 0.05);
 }
@@ -137,12 +140,13 @@ TEST(ArgosFiles, MaySendLongerMessages) {
   const auto with_size = [](const std::string& root, const std::string& size) {
     std::string text = "<" + root + R"(><framework><experiment/></framework>
 <controllers><wander id="w" library="wander"/></controllers>
-<arena size="4,4,1"><e-puck id="a" rab_data_size=")" + size + R"("><body position="0,0,0"/><controller config="w"/></e-puck></arena></)" +
-                       root + ">";
+<arena size="4,4,1"><e-puck id="a" rab_data_size=")" +
+                       size + R"("><body position="0,0,0"/><controller config="w"/></e-puck></arena></)" + root + ">";
     return read(text);
   };
-  EXPECT_EQ(with_size("argos-configuration", "30").good().robots.at(0).own_kind->part<hal::RangeAndBearingPart>()->payload,
-            30);
+  EXPECT_EQ(
+      with_size("argos-configuration", "30").good().robots.at(0).own_kind->part<hal::RangeAndBearingPart>()->payload,
+      30);
   EXPECT_THAT(with_size("argos-configuration", "65").text(), HasSubstr("out of range"));
   EXPECT_THAT(with_size("tandem", "30").text(), HasSubstr("out of range"));
 }

@@ -1,7 +1,4 @@
 // Controllers that tell what they are given, and how they are called.
-#include <cmath>
-#include <stdexcept>
-
 #include <argos3/core/control_interface/ci_controller.h>
 #include <argos3/core/utility/logging/argos_log.h>
 #include <argos3/core/utility/math/quaternion.h>
@@ -9,6 +6,8 @@
 #include <argos3/plugins/robots/generic/control_interface/ci_battery_sensor.h>
 #include <argos3/plugins/robots/generic/control_interface/ci_leds_actuator.h>
 #include <argos3/plugins/robots/generic/control_interface/ci_light_sensor.h>
+#include <cmath>
+#include <stdexcept>
 
 namespace argos {
 
@@ -99,8 +98,8 @@ class CChance : public CCI_Controller {
     m_pcSecond = CRandom::CreateRNG("argos");
   }
   void ControlStep() override {
-    LOG << std::setprecision(17) << m_pcFirst->Uniform(CRange<Real>(0.0, 1.0)) << " "
-        << m_pcSecond->Gaussian(1.0) << std::endl;
+    LOG << std::setprecision(17) << m_pcFirst->Uniform(CRange<Real>(0.0, 1.0)) << " " << m_pcSecond->Gaussian(1.0)
+        << std::endl;
   }
 
  private:

@@ -107,8 +107,7 @@ class CReadings : public CCI_Controller {
       LOG << "turret " << GetSensor<CCI_FootBotTurretEncoderSensor>("footbot_turret_encoder")->GetRotation().GetValue()
           << std::endl;
     if (HasSensor("footbot_distance_scanner")) {
-      CCI_FootBotDistanceScannerSensor* pc =
-          GetSensor<CCI_FootBotDistanceScannerSensor>("footbot_distance_scanner");
+      CCI_FootBotDistanceScannerSensor* pc = GetSensor<CCI_FootBotDistanceScannerSensor>("footbot_distance_scanner");
       LOG << "scanner " << pc->GetShortReadingsMap().size() << " " << pc->GetLongReadingsMap().size() << " "
           << pc->GetReadingsMap().size() << std::endl;
     }
