@@ -14,7 +14,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The names under which `library` may lie in a folder.
-std::vector<fs::path> spellings(const fs::path& library) {
+std::vector<fs::path> spellings(fs::path library) {
+  if (library.extension() == ".dylib") library.replace_extension(".so");  // as files written on a Mac have it
   std::vector<fs::path> names{library};
   const std::string file = library.filename().string();
   const bool has_extension = library.extension() == ".so";

@@ -22,6 +22,7 @@
 #include "hal/device/ring_sensors.hpp"
 #include "hal/device/turret.hpp"
 #include "hal/device/wheels.hpp"
+#include "hal/named_colors.hpp"
 
 namespace tandem::controllers::lua {
 namespace {
@@ -225,29 +226,11 @@ void fill_hearing(lua_State* L, Interpreter& in, std::size_t device, const void*
 
 // --- colours ---
 
-struct NamedColor {
-  const char* name;
-  hal::Rgb color;
-};
-constexpr NamedColor kColors[] = {{"black", {0, 0, 0}},        {"white", {255, 255, 255}},  {"red", {255, 0, 0}},
-                                  {"green", {0, 255, 0}},      {"blue", {0, 0, 255}},       {"magenta", {255, 0, 255}},
-                                  {"cyan", {0, 255, 255}},     {"yellow", {255, 255, 0}},   {"orange", {255, 140, 0}},
-                                  {"brown", {165, 42, 42}},    {"purple", {160, 32, 240}},  {"gray10", {26, 26, 26}},
-                                  {"gray30", {77, 77, 77}},    {"gray50", {128, 128, 128}}, {"gray70", {178, 178, 178}},
-                                  {"gray80", {204, 204, 204}}, {"gray90", {229, 229, 229}}};
-
 /// The colour that the arguments from `first` on tell: a name, "r,g,b", or three numbers.
 hal::Rgb color_at(lua_State* L, int first) {
   if (lua_type(L, first) == LUA_TSTRING) {
     const std::string_view text = lua_tostring(L, first);
-    for (const NamedColor& known : kColors) {
-      if (text == known.name) return known.color;
-    }
-    std::array<int, 3> rgb{};
-    char more = '\0';
-    if (std::sscanf(text.data(), "%d,%d,%d%c", &rgb[0], &rgb[1], &rgb[2], &more) == 3 &&
-        std::all_of(rgb.begin(), rgb.end(), [](int c) { return c >= 0 && c <= 255; }))
-      return {static_cast<std::uint8_t>(rgb[0]), static_cast<std::uint8_t>(rgb[1]), static_cast<std::uint8_t>(rgb[2])};
+    if (const auto color = hal::parse_color(text)) return *color;
     luaL_argerror(L, first, "a colour is a name such as \"red\", or \"r,g,b\" with 0 to 255");
   }
   luaL_checknumber(L, first);

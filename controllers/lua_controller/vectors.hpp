@@ -1,5 +1,5 @@
-// vector2, vector3 and quaternion as ARGoS' scripts have them, written in Lua. Robots share the functions; the tables
-// of methods and the metatables are reached by no script.
+// vector2, vector3 and quaternion as ARGoS' scripts have them, of floats, written in Lua. Robots share the functions; the
+// tables of methods and the metatables are reached by no script.
 #pragma once
 #include <string_view>
 
@@ -27,7 +27,7 @@ function vector2(...)
   local n, x, y = select("#", ...), ...
   if n == 0 then return make2(0.0, 0.0) end
   if n == 1 then check(x, v2, "vector2") return make2(x.x, x.y) end
-  if n == 2 and is_number(x) and is_number(y) then return make2(x, y) end
+  if n == 2 and is_number(x) and is_number(y) then return make2(x + 0.0, y + 0.0) end
   error("vector2() takes nothing, a vector2 or two numbers", 2)
 end
 function v2.__add(a, b) check(a, v2, "vector2") check(b, v2, "vector2") return make2(a.x + b.x, a.y + b.y) end
@@ -68,7 +68,7 @@ function vector3(...)
   local n, x, y, z = select("#", ...), ...
   if n == 0 then return make3(0.0, 0.0, 0.0) end
   if n == 1 then check(x, v3, "vector3") return make3(x.x, x.y, x.z) end
-  if n == 3 and is_number(x) and is_number(y) and is_number(z) then return make3(x, y, z) end
+  if n == 3 and is_number(x) and is_number(y) and is_number(z) then return make3(x + 0.0, y + 0.0, z + 0.0) end
   error("vector3() takes nothing, a vector3 or three numbers", 2)
 end
 function v3.__add(a, b) check(a, v3, "vector3") check(b, v3, "vector3") return make3(a.x + b.x, a.y + b.y, a.z + b.z) end
@@ -117,7 +117,9 @@ function quaternion(...)
     local s = sin(0.5 * w)
     return makeq(cos(0.5 * w), s * x.x, s * x.y, s * x.z)
   end
-  if n == 4 and is_number(w) and is_number(x) and is_number(y) and is_number(z) then return makeq(w, x, y, z) end
+  if n == 4 and is_number(w) and is_number(x) and is_number(y) and is_number(z) then
+    return makeq(w + 0.0, x + 0.0, y + 0.0, z + 0.0)
+  end
   error("quaternion() takes nothing, a quaternion, an angle and a vector3, or four numbers w, x, y, z", 2)
 end
 function q.__mul(a, b)

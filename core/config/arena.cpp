@@ -1,5 +1,4 @@
 // Reads <arena>: the space and what is in it.
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <set>
@@ -7,34 +6,9 @@
 
 #include "core/config/reading.hpp"
 #include "hal/element_options.hpp"
+#include "hal/named_colors.hpp"
 
 namespace tandem::core {
-namespace schema {
-
-bool parse_color(const std::string& text, std::array<std::uint8_t, 3>& rgb) {
-  static const std::map<std::string, std::array<std::uint8_t, 3>> kNames = {
-      {"black", {0, 0, 0}},        {"white", {255, 255, 255}}, {"red", {255, 0, 0}},       {"green", {0, 255, 0}},
-      {"blue", {0, 0, 255}},       {"yellow", {255, 255, 0}},  {"magenta", {255, 0, 255}}, {"cyan", {0, 255, 255}},
-      {"orange", {255, 140, 0}},   {"brown", {165, 42, 42}},   {"purple", {160, 32, 240}}, {"gray10", {26, 26, 26}},
-      {"gray50", {128, 128, 128}}, {"gray90", {230, 230, 230}}};
-  if (const auto named = kNames.find(text); named != kNames.end()) {
-    rgb = named->second;
-    return true;
-  }
-  const char* at = text.data();
-  const char* end = text.data() + text.size();
-  for (std::size_t i = 0; i < 3; ++i) {
-    unsigned value = 0;
-    const auto [next, status] = std::from_chars(at, end, value);
-    if (status != std::errc{} || value > 255 || (i < 2 ? next == end || *next != ',' : next != end)) return false;
-    rgb[i] = static_cast<std::uint8_t>(value);
-    at = next + 1;
-  }
-  return true;
-}
-
-}  // namespace schema
-
 namespace {
 
 /// Reads the things in the arena; `distribute` is what they stand in, if anything.
@@ -241,13 +215,19 @@ class ArenaReader {
       const auto l = reading_.read<schema::Led>(c);
       LedItem led;
       led.p_O = l.offset;
-      if (!schema::parse_color(l.color, led.rgb))
-        reading_.error(c, "color", "'" + l.color + "' is neither a colour's name nor \"r,g,b\"");
+      read_color(c, l.color, led.rgb);
       if (inside(item, l.offset))
         reading_.warn(c, "the LED lies inside its <" + std::string(item.shape == ShapeKind::Box ? "box" : "cylinder") +
                              ">, where no camera sees it; offset is from the middle of the base");
       item.leds.push_back(led);
     }
+  }
+
+  void read_color(const Element& e, const std::string& text, std::array<std::uint8_t, 3>& rgb) {
+    if (const auto color = hal::parse_color(text))
+      rgb = {color->r, color->g, color->b};
+    else
+      reading_.error(e, "color", "'" + text + "' is neither a colour's name nor \"r,g,b\"");
   }
 
   /// Whether a point is deep in the object, from the middle of its base.
@@ -282,8 +262,7 @@ class ArenaReader {
     item.intensity = l.intensity;
     item.medium = l.medium;
     item.line = e.line;
-    if (!schema::parse_color(l.color, item.rgb))
-      reading_.error(e, "color", "'" + l.color + "' is neither a colour's name nor \"r,g,b\"");
+    read_color(e, l.color, item.rgb);
     if (distribute != nullptr)
       item.distribute = *distribute;
     else if (!positioned)

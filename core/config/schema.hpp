@@ -546,7 +546,4 @@ struct Trajectory {
   }
 };
 
-/// Red, green and blue of a colour name or "r,g,b"; false when it is neither.
-bool parse_color(const std::string& text, std::array<std::uint8_t, 3>& rgb);
-
 }  // namespace tandem::core::schema

@@ -10,6 +10,8 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "hal/named_colors.hpp"
+
 namespace argos {
 
 CARGoSException::CARGoSException(const std::string& what, std::exception* nested) noexcept
@@ -83,53 +85,42 @@ bool MatchPattern(const std::string& text, const std::string pattern) {
 
 namespace {
 
-constexpr CColor grey(unsigned percent) {
-  const auto level = static_cast<UInt8>((percent * 255 + 50) / 100);
-  return CColor(level, level, level);
-}
+namespace hal = tandem::hal;
 
-struct SNamedColor {
-  const char* Name;
-  const CColor* Color;
-};
-constexpr std::array kColors =
-    std::to_array<SNamedColor>({{"black", &CColor::BLACK},   {"white", &CColor::WHITE},   {"red", &CColor::RED},
-                                {"green", &CColor::GREEN},   {"blue", &CColor::BLUE},     {"magenta", &CColor::MAGENTA},
-                                {"cyan", &CColor::CYAN},     {"yellow", &CColor::YELLOW}, {"orange", &CColor::ORANGE},
-                                {"brown", &CColor::BROWN},   {"purple", &CColor::PURPLE}, {"gray10", &CColor::GRAY10},
-                                {"gray20", &CColor::GRAY20}, {"gray30", &CColor::GRAY30}, {"gray40", &CColor::GRAY40},
-                                {"gray50", &CColor::GRAY50}, {"gray60", &CColor::GRAY60}, {"gray70", &CColor::GRAY70},
-                                {"gray80", &CColor::GRAY80}, {"gray90", &CColor::GRAY90}});
+constexpr CColor color_of(hal::Rgb color) {
+  return CColor(color.r, color.g, color.b);
+}
+constexpr CColor named(std::string_view name) {
+  return color_of(hal::color_named(name).value());
+}
 
 }  // namespace
 
-constinit CColor CColor::BLACK{0, 0, 0};
-constinit CColor CColor::WHITE{255, 255, 255};
-constinit CColor CColor::RED{255, 0, 0};
-constinit CColor CColor::GREEN{0, 255, 0};
-constinit CColor CColor::BLUE{0, 0, 255};
-constinit CColor CColor::MAGENTA{255, 0, 255};
-constinit CColor CColor::CYAN{0, 255, 255};
-constinit CColor CColor::YELLOW{255, 255, 0};
-constinit CColor CColor::ORANGE{255, 140, 0};
-constinit CColor CColor::BROWN{165, 42, 42};
-constinit CColor CColor::PURPLE{160, 32, 240};
-constinit CColor CColor::GRAY10 = grey(10);
-constinit CColor CColor::GRAY20 = grey(20);
-constinit CColor CColor::GRAY30 = grey(30);
-constinit CColor CColor::GRAY40 = grey(40);
-constinit CColor CColor::GRAY50 = grey(50);
-constinit CColor CColor::GRAY60 = grey(60);
-constinit CColor CColor::GRAY70 = grey(70);
-constinit CColor CColor::GRAY80 = grey(80);
-constinit CColor CColor::GRAY90 = grey(90);
+constinit CColor CColor::BLACK = named("black");
+constinit CColor CColor::WHITE = named("white");
+constinit CColor CColor::RED = named("red");
+constinit CColor CColor::GREEN = named("green");
+constinit CColor CColor::BLUE = named("blue");
+constinit CColor CColor::MAGENTA = named("magenta");
+constinit CColor CColor::CYAN = named("cyan");
+constinit CColor CColor::YELLOW = named("yellow");
+constinit CColor CColor::ORANGE = named("orange");
+constinit CColor CColor::BROWN = named("brown");
+constinit CColor CColor::PURPLE = named("purple");
+constinit CColor CColor::GRAY10 = named("gray10");
+constinit CColor CColor::GRAY20 = named("gray20");
+constinit CColor CColor::GRAY30 = named("gray30");
+constinit CColor CColor::GRAY40 = named("gray40");
+constinit CColor CColor::GRAY50 = named("gray50");
+constinit CColor CColor::GRAY60 = named("gray60");
+constinit CColor CColor::GRAY70 = named("gray70");
+constinit CColor CColor::GRAY80 = named("gray80");
+constinit CColor CColor::GRAY90 = named("gray90");
 
 void CColor::Set(const std::string& text) {
-  for (const SNamedColor& named : kColors) {
-    if (text == named.Name) {
-      *this = *named.Color;
-      return;
-    }
+  if (const auto known = hal::color_named(text)) {
+    *this = color_of(*known);
+    return;
   }
   std::vector<std::string> parts;
   Tokenize(text, parts, ",");
@@ -155,8 +146,8 @@ CColor CColor::Blend(const CColor& background) const noexcept {
 }
 
 std::ostream& operator<<(std::ostream& out, const CColor& color) {
-  for (const SNamedColor& named : kColors) {
-    if (color == *named.Color) return out << named.Name;
+  for (const hal::NamedColor& known : hal::kNamedColors) {
+    if (color == color_of(known.color)) return out << known.name;
   }
   return out << color.m_unRed << "," << color.m_unGreen << "," << color.m_unBlue << "," << color.m_unAlpha;
 }

@@ -282,6 +282,7 @@ TEST(LuaApi, HasVectorsAndQuaternions) {
   holds({.text = R"(function step()
     local a, b = vector2(3, 4), vector2()
     assert(a:length() == 5 and a:dot(vector2(1, 1)) == 7 and a == vector2(a) and a ~= b and a + b == a)
+    assert(tostring(a.x) == "3.0" and tostring((a + vector2(1, 1)).y) == "5.0", "components are floats")
     assert(a * 2 == vector2(6, 8) and 2 * a == a - -a and tostring(a) == "3,4")
     near(vector2(1, 0):rotate(math.pi / 2).y, 1, "rotated")
     near(a:normalize():length(), 1, "normalized")
