@@ -75,6 +75,15 @@ TEST_F(ArgosCorpusScript, RunsAFileInTheFolderFromWhichItsScriptIsFound) {
   EXPECT_EQ(json_value(log(), "cause"), "");
 }
 
+TEST_F(ArgosCorpusScript, LetsScriptsUseFilesWhereThatIsAllowed) {
+  folder_.write("notes.lua", "function init() io.open('notes', 'w'):close() end function step() end");
+  write("notes.argos",
+        "<lua_controller id=\"c\"><actuators/><sensors/><params script=\"notes.lua\"/></lua_controller>");
+  EXPECT_EQ(call("--json -"), 1) << log();
+  EXPECT_THAT(log(), HasSubstr("--allow-io"));
+  EXPECT_EQ(call("--json - --allow-io"), 0) << log();
+}
+
 TEST_F(ArgosCorpusScript, SaysThatThereIsNothing) {
   EXPECT_EQ(call(""), 3);
   EXPECT_THAT(log(), HasSubstr("there is no experiment"));
