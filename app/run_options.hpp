@@ -63,6 +63,12 @@ struct ReplayRequest {
   bool accept_changes = false;                ///< of files and plug-ins
 };
 
+/// Changes of an experiment (`--set`), and whether all its scripts in Lua may do input and output (`--allow-io`).
+inline std::vector<std::string> with_io(std::vector<std::string> overrides, bool allow_io) {
+  if (allow_io) overrides.emplace_back("controllers.lua_controller[*].params.allow_io=true");
+  return overrides;
+}
+
 struct RunOptions {
   Libraries plugins;
   std::string experiment;
@@ -94,12 +100,8 @@ struct RunOptions {
   double step_timeout_s = 5.0;  ///< after which a controller or hook that does not return is named; 0: never
   double step_limit_s = 0.0;    ///< after which it ends the run, as a failure; 0: never
 
-  /// `overrides`, and what other options change in the experiment.
-  std::vector<std::string> all_overrides() const {
-    std::vector<std::string> all = overrides;
-    if (allow_io) all.emplace_back("controllers.lua_controller[*].params.allow_io=true");
-    return all;
-  }
+  /// `overrides`, and changes by other options.
+  std::vector<std::string> all_overrides() const { return with_io(overrides, allow_io); }
 };
 
 }  // namespace tandem::app

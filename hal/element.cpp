@@ -179,7 +179,7 @@ namespace {
 void write_xml(const Element& element, std::string& xml) {
   xml += "<" + element.name;
   for (const Element::Attribute& a : element.attributes) xml += " " + a.name + "=\"" + escaped_markup(a.value) + "\"";
-  xml += ">";
+  xml += ">" + escaped_markup(element.text);
   for (const Element& child : element.children) write_xml(child, xml);
   xml += "</" + element.name + ">";
 }

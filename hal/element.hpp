@@ -16,7 +16,7 @@ struct Problem {
   int line = 0;
   std::string message;
   bool warning = false;
-  bool ignored = false;  ///< a warning of what an ARGoS file says and nothing reads
+  bool ignored = false;  ///< a warning of content of an ARGoS file that nothing reads
 };
 using Problems = std::vector<Problem>;
 
@@ -24,12 +24,12 @@ using Problems = std::vector<Problem>;
 std::string to_text(const Problem& problem);
 /// Whether an error is among the problems from number `first` on.
 bool has_errors(const Problems& problems, std::size_t first = 0) noexcept;
-/// Of what is ignored, each kind of message stays once, with the number of the others.
+/// Of ignored content, each kind of message stays once, with the number of the others.
 void count_ignored(Problems& problems);
-/// Makes errors of what is ignored.
+/// Makes errors of warnings of ignored content.
 void refuse_ignored(Problems& problems);
 
-/// Root of the experiment files of ARGoS 3, which ignores what it does not know.
+/// Root of the experiment files of ARGoS 3, which ignores unknown content.
 inline constexpr std::string_view kArgosRoot = "argos-configuration";
 
 /// An XML element without the XML library.
@@ -45,7 +45,8 @@ struct Element {
   int line = 0;
   std::vector<Attribute> attributes;
   std::vector<Element> children;
-  bool argos = false;  ///< of a file whose root is `kArgosRoot`
+  std::string text = {};  ///< what stands between the tags, where that belongs to others (<params>)
+  bool argos = false;     ///< of a file whose root is `kArgosRoot`
 
   const std::string* attribute(std::string_view attribute_name) const noexcept;
   const Element* child(std::string_view child_name) const noexcept;
@@ -55,7 +56,7 @@ struct Element {
 Problem problem_at(const Element& element, std::string message);
 Problem problem_at(const Element& element, std::string_view attribute, std::string message);
 
-/// A problem with what nothing reads: an error; in an ARGoS file a warning.
+/// A problem with content that nothing reads: an error; in an ARGoS file a warning.
 Problem unread_at(const Element& element, std::string message);
 Problem unread_at(const Element& element, std::string_view attribute, std::string message);
 

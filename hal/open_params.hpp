@@ -24,7 +24,7 @@ constexpr bool is_no_attribute(std::string_view name) noexcept {
   return name == kOtherParams || name == kPathParam || name == kArgosParam || name == kWholeElement;
 }
 
-/// Whether what is described stands in an ARGoS file; before the parameters whose defaults depend on it.
+/// Whether the description is of an element of an ARGoS file; before the parameters whose defaults depend on it.
 inline bool in_argos_file(ParamVisitor& v) {
   bool argos = false;
   v.flag(kArgosParam, argos, "");

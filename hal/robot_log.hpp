@@ -27,7 +27,7 @@ class RobotLog {
     /// threads at once, for different robots.
     virtual void write(std::uint32_t robot, Severity severity, std::string_view text,
                        std::uint32_t left_out) noexcept = 0;
-    /// Whether what is too much is kept, by `keep`.
+    /// Whether messages beyond the limit are kept, by `keep`.
     virtual bool keeps() const noexcept { return false; }
     /// Takes such a message; as `write`.
     virtual void keep(std::uint32_t /*robot*/, Severity /*severity*/, std::string_view /*text*/) noexcept {}

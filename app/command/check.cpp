@@ -22,7 +22,7 @@ int check(const CheckOptions& options) {
   }
   if (!open_plugins(loader, options.plugins)) return kBadInput;
   if (const auto other = check_other_file(options.experiment, loader.catalog())) return *other;
-  const auto scenario = read_or_complain(loader, {}, options.experiment, options.overrides, options.strict);
+  const auto scenario = read_or_complain(loader, {}, options.experiment, options.all_overrides(), options.strict);
   if (!scenario) return kBadInput;
   // What only making the world can tell: libraries, devices, parameters, places.
   core::Problems problems;

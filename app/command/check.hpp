@@ -12,14 +12,17 @@ struct CheckOptions {
   Libraries plugins;
   std::string experiment;
   std::vector<std::string> overrides;
-  bool strict = false;  ///< what an ARGoS file says and nothing reads is an error, too
+  bool allow_io = false;
+  bool strict = false;  ///< content of ARGoS files that nothing reads is an error, too
 
   void describe(hal::CommandLine& line) {
     line.word("experiment", experiment, "The experiment file (.xml)").required().file();
     line.option("--set", overrides, "Change the experiment first: path=value").repeatable();
+    describe_allow_io(line, allow_io);
     line.flag("--strict", strict, "In an ARGoS file (<argos-configuration>), too, what nothing reads is an error");
     describe_plugins(line, plugins);
   }
+  std::vector<std::string> all_overrides() const { return with_io(overrides, allow_io); }
 };
 
 /// A file that is no experiment, by the name of its root element. An entry of the catalog.

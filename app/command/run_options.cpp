@@ -104,8 +104,7 @@ void describe_run(hal::CommandLine& line, RunOptions& o) {
       .excludes("--seconds");
   line.option("--seed", o.seed, "Seed of all chance, instead of the file's");
   line.option("--threads", o.threads, "Threads that step the world; results do not depend on it").range(0, 1024);
-  line.flag("--allow-io", o.allow_io,
-            "Let all scripts in Lua use files, the clock and the environment: the run need not repeat");
+  describe_allow_io(line, o.allow_io);
   line.option("--set", o.overrides, "Change the experiment: path=value, e.g. framework.experiment.length=5; repeatable")
       .repeatable();
   line.option("--report", o.report, "Write a JSON report to this file ('-': standard output)").file();

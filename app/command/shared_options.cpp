@@ -9,6 +9,11 @@ void describe_plugins(hal::CommandLine& line, Libraries& plugins) {
       .file();
 }
 
+void describe_allow_io(hal::CommandLine& line, bool& allow) {
+  line.flag("--allow-io", allow,
+            "Let all scripts in Lua use files, the clock and the environment: the run need not repeat");
+}
+
 void describe_step_timeout(hal::CommandLine& line, double& seconds) {
   line.option("--step-timeout", seconds,
               "Seconds after which a controller or hook that has not returned is named; Ctrl-C then ends the run; "

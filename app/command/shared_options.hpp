@@ -13,6 +13,9 @@ namespace tandem::app {
 /// The option `--plugin`.
 void describe_plugins(hal::CommandLine& line, Libraries& plugins);
 
+/// The option `--allow-io`.
+void describe_allow_io(hal::CommandLine& line, bool& allow);
+
 /// The option `--step-timeout`.
 void describe_step_timeout(hal::CommandLine& line, double& seconds);
 

@@ -36,7 +36,7 @@ std::ptrdiff_t thread_count();
 class ExperimentReading {
  public:
   /// `loader` must outlive this, and all that is made with its catalog.
-  /// `strict`: what is ignored in ARGoS files is an error.
+  /// `strict`: ignored content of ARGoS files is an error.
   ExperimentReading(hal::PluginLoader& loader, const std::vector<std::string>& plugins, bool strict = false);
 
   /// Reads the file, judges all plug-ins, and opens those with what stops real robots: what a guardian needs. Starts no
@@ -48,7 +48,7 @@ class ExperimentReading {
   bool has_real_robots(const std::vector<std::string>& without) const;
   /// Opens the other plug-ins, and judges the file by the catalog that is then complete.
   std::optional<core::Scenario> read();
-  /// Whether the file, or what changed it, said how fast its run goes: <time mode="…"/>. Once it is read.
+  /// Whether the file, or a setting beside it, said how fast its run goes: <time mode="…"/>. Once it is read.
   bool says_pace() const noexcept { return says_pace_; }
 
  private:

@@ -13,6 +13,7 @@ namespace tandem::app {
 namespace {
 
 constexpr std::size_t kFewestLines = 4, kFewestColumns = 8;  // without the frame
+constexpr std::size_t kAround = 3;                           // lines: the frame's, and the legend below
 constexpr double kLineHeight = 2.0;                          // of a character, in widths
 
 /// Its places are characters.
@@ -76,10 +77,12 @@ class Map {
     std::vector<std::string> all{edge(size.size() <= columns_ ? size : "")};
     for (const std::string& line : lines_) all.push_back("|" + line + "|");
     all.push_back(edge(""));
-    const std::vector<std::string> signs = legend();
-    for (std::size_t i = 0; i < signs.size() && i < all.size(); ++i) {
-      if (width_of(all[i]) + 2 + width_of(signs[i]) <= columns) all[i] += "  " + signs[i];
+    std::string below;
+    for (const std::string& sign : legend()) {
+      if (width_of(below) + width_of(sign) + 4 > columns) break;
+      below += (below.empty() ? " " : "   ") + sign;
     }
+    all.push_back(std::move(below));
     return all;
   }
 
@@ -116,11 +119,11 @@ class Map {
 }  // namespace
 
 std::vector<std::string> arena_map(const core::Space& space, Screen::Size room) {
-  if (room.lines < kFewestLines + 2 || room.columns < kFewestColumns + 2) return {};
+  if (room.lines < kFewestLines + kAround || room.columns < kFewestColumns + 2) return {};
   const core::SpaceStores& stores = space.stores();
   const double width_m = stores.max_x_m - stores.min_x_m, height_m = stores.max_y_m - stores.min_y_m;
   if (!(width_m > 0.0) || !(height_m > 0.0) || !std::isfinite(width_m + height_m)) return {};
-  Map map(stores, room.columns - 2, room.lines - 2);
+  Map map(stores, room.columns - 2, room.lines - kAround);
   for (const core::Object& object : space.objects()) {
     if (object.alive && std::isfinite(object.x_m + object.y_m)) map.add(object);
   }

@@ -26,7 +26,7 @@ class RunLog {
   hal::Log log();
   /// For what is about real robots: never silent on the terminal, whatever else was said.
   hal::Log robots();
-  /// For what is too much for people: the file gets it alone, and it counts among what the terminal did not get.
+  /// For messages too many for people: the file gets them alone; they count among those that the terminal did not get.
   /// Without a file it drops everything.
   hal::Log excess();
   /// Takes an entry into the file alone.

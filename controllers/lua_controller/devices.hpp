@@ -43,7 +43,7 @@ void open_ports(lua_State* state, Interpreter& in);
 
 /// Opens the libraries that scripts have into the table at the top of the stack.
 void open_libraries(lua_State* state, Interpreter& in);
-/// `require` and its kin; what there is of io, os and package: into the table at the top of the stack.
+/// `require` and its kin; io, os and package, as far as allowed: into the table at the top of the stack.
 void open_code(lua_State* state);
 void open_outside(lua_State* state, Interpreter& in);
 /// What it has of its own: elementary functions and random numbers, in the table of math on the top of the stack.

@@ -8,7 +8,8 @@
 #include "hal/device/body_sensors.hpp"
 #include "hal/input_file.hpp"
 
-// The files of the process, which Lua's own code refers to in functions that scripts do not have: by the linker's option
+// The files of the process, which Lua's own code refers to in functions that scripts do not have: by the linker's
+// option
 // --wrap.
 extern "C" {
 extern FILE *__real_stdin, *__real_stdout, *__real_stderr;

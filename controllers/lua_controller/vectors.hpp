@@ -1,5 +1,5 @@
-// vector2, vector3 and quaternion as ARGoS' scripts have them, of floats, written in Lua. Robots share the functions; the
-// tables of methods and the metatables are reached by no script.
+// vector2, vector3 and quaternion as ARGoS' scripts have them, of floats, written in Lua. Robots share the functions;
+// the tables of methods and the metatables are reached by no script.
 #pragma once
 #include <string_view>
 

@@ -168,9 +168,9 @@ class ArenaReader {
   void check_draw_values(const Element& e, const schema::Draw& draw, Distribution& d) {
     static constexpr std::array<std::string_view, 3> kOrdinal = {"first", "second", "third"};
     for (std::size_t i = 0; i < 3; ++i) {
-      if (draw.min[i] > draw.max[i])
+      if (d.method == Distribution::Method::Uniform && draw.min[i] > draw.max[i])
         reading_.error(e, "min", "above max in its " + std::string(kOrdinal[i]) + " number");
-      if (draw.std_dev[i] < 0.0)
+      if (d.method == Distribution::Method::Gaussian && draw.std_dev[i] < 0.0)
         reading_.error(e, "std_dev", "negative in its " + std::string(kOrdinal[i]) + " number");
       const double n = draw.layout[i];
       if (n >= 1.0 && n <= 1e6 && n == std::floor(n))

@@ -33,7 +33,7 @@ struct LightNoise : LevelNoise {
 LightCurve light_curve(const std::string& curve, std::string_view written) noexcept {
   if (curve != "argos") return LightCurve::Facing;
   const bool fades = written == "footbot_light" || written == "eyebot_light";
-  return fades ? LightCurve::ArgosFootbot : LightCurve::ArgosGeneric;
+  return fades ? LightCurve::ArgosFading : LightCurve::ArgosGeneric;
 }
 
 /// Adds noise to `count` levels and keeps them within [0, 1].

@@ -61,7 +61,7 @@ class Hook {
 
   virtual void before_run(HookContext&) {}
   virtual void before_step(HookContext&) {}
-  /// Bodies have moved, and sensors and controllers have their turn next: they see what is changed here. Robots that
+  /// Bodies have moved, and sensors and controllers have their turn next: they see changes made here. Robots that
   /// are added here sense and step in this tick.
   virtual void before_sense(HookContext&) {}
   virtual void after_step(HookContext&) {}

@@ -15,7 +15,7 @@ inline const hal::DifferentialDrive& wheels_of(const hal::RobotKind& kind) noexc
   return brakes;
 }
 
-/// The most that a wheel of the block's robots turns with: the kind's limit, or, of a kind without, what they are told.
+/// The most that a wheel of the block's robots turns with: the kind's limit, or, of a kind without, their command.
 inline double top_wheel_m_s(const SpaceStores& stores, const RobotBlock& block) noexcept {
   const hal::DifferentialDrive& wheels = wheels_of(*stores.groups[block.group].kind);
   if (wheels.limited()) return wheels.max_speed_m_s;

@@ -34,7 +34,7 @@ struct Incidents {
   std::uint64_t commands_not_finite = 0;
   std::uint64_t controllers_thrown = 0;
   std::uint64_t bodies_escaped = 0;
-  std::vector<std::string> first;  ///< the first few causes, each naming a robot, tick, what happened, and to how many
+  std::vector<std::string> first;     ///< the first few causes, each naming a robot, tick, event, and to how many
   std::vector<IncidentCause> causes;  ///< of `first`
   std::uint64_t latest = 0;           ///< of these, that happened last
 

@@ -27,7 +27,7 @@ struct WorldOptions {
   std::optional<std::int64_t> threads;       ///< overrides the scenario's; 0 and 1: the caller alone
   std::optional<Assignment> assignment;
   hal::Log log;
-  hal::Log excess_log;  ///< gets what controllers say beyond what people can read, while `log` gets the rest
+  hal::Log excess_log;  ///< gets controllers' messages beyond those that people can read; `log` gets the rest
 };
 
 /// State of a run.

@@ -115,7 +115,7 @@ struct Excess {
 struct Message {
   hal::Severity severity;
   std::string text;
-  bool excess = false;  ///< of a robot that says much: for what keeps all
+  bool excess = false;  ///< of a robot that says much: for logs that keep all
 };
 
 struct World::Impl final : hal::RobotLog::Sink {

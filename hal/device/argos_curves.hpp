@@ -10,7 +10,7 @@
 
 namespace tandem::hal {
 
-/// Reading of an infrared sensor by the distance to what it sees: that of the generic `proximity`, of foot-bot and
+/// Reading of an infrared sensor by the distance to the body it sees: that of the generic `proximity`, of foot-bot and
 /// eye-bot, of the e-puck.
 enum class ArgosProximity : std::uint8_t { Generic, Footbot, Epuck };
 

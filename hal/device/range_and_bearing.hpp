@@ -167,7 +167,7 @@ struct RangeAndBearing : HeardMessages<16, kRabPayloadMax> {
   static constexpr std::string_view kName = "range_and_bearing";
 };
 
-/// The same with room for more and longer messages than real boards take: what scripts and controllers of ARGoS get.
+/// The same with room for more and longer messages than real boards take, for scripts and controllers of ARGoS.
 struct RangeAndBearingMany : HeardMessages<256, kLongRabPayloadMax> {
   static constexpr std::string_view kName = "range_and_bearing_many";
   static constexpr std::string_view kGrows = RangeAndBearing::kName;

@@ -28,7 +28,9 @@ class Converter {
     for (const auto* node = from.FirstChild(); node != nullptr; node = node->NextSibling()) {
       if (const auto* child = node->ToElement(); child != nullptr) {
         element.children.push_back(convert(*child, free, argos));
-      } else if (node->ToText() != nullptr && !free) {
+      } else if (node->ToText() != nullptr && free) {
+        element.text += node->Value();
+      } else if (node->ToText() != nullptr) {
         const std::string text = node->Value();
         Problem unread = unread_at(element, "<" + element.name + "> holds the text '" + text.substr(0, 30) +
                                                 "', which means nothing; values stand in attributes, comments in "
@@ -50,6 +52,7 @@ class Converter {
 void print(const Element& element, tinyxml2::XMLPrinter& printer) {
   printer.OpenElement(element.name.c_str());
   for (const Element::Attribute& a : element.attributes) printer.PushAttribute(a.name.c_str(), a.value.c_str());
+  if (!element.text.empty()) printer.PushText(element.text.c_str());
   for (const Element& child : element.children) print(child, printer);
   printer.CloseElement();
 }

@@ -76,7 +76,7 @@ class Swarms : public Scripts {
     folder_.write("e.xml", R"(<tandem><framework><experiment length="2" ticks_per_second="10"/></framework><controllers>
 <lua_controller id="walk"><actuators><differential_steering/></actuators><params script="walk.lua"/></lua_controller>
 </controllers><arena size="4,4,1"><distribute><position method="grid" center="0,0,0" distances="0.3,0.3,0" layout="5,1,1"/>
-<entity quantity="5" max_trials="1"><e-puck id="ep"><controller config="walk"/></e-puck></entity></distribute></arena>
+<orientation method="constant" values="0,0,0"/><entity quantity="5" max_trials="1"><e-puck id="ep"><controller config="walk"/></e-puck></entity></distribute></arena>
 </tandem>)");
     Tandem program({"run", "e.xml", "--quiet"}, folder_.path());
     EXPECT_EQ(program.wait(60), code) << program.errors();

@@ -102,7 +102,7 @@ TEST(Watch, ShowsAMapOfTheArenaWhereThereIsRoom) {
     <box id="b" size="0.2,2,0.5" movable="false"><body position="1.9,0,0"/></box></arena>
 </tandem>)");
   OnTerminal run({"run", file.string(), "--watch"}, folder.path(), 60, 24);
-  ASSERT_TRUE(run.shows({"+- 4 x 2 m ---", "|x ", "#|", "x  stopped", "#  fixed"})) << run.screen.text();
+  ASSERT_TRUE(run.shows({"+- 4 x 2 m ---", "| x ", "#|", "x  stopped", "#  fixed"})) << run.screen.text();
   EXPECT_THAT(run.screen.text(), Not(HasSubstr("movable"))) << "what is not there";
   run.resize(60, 9);
   EXPECT_TRUE(eventually(

@@ -50,7 +50,7 @@ TEST_F(Loader, SaysWhatToDoWithALibraryOfArgos) {
   fs::copy_file(kFolder / "libtest_hal_no_plugin.so", file, fs::copy_options::overwrite_existing);
   EXPECT_THAT(error_of(file.string()), HasSubstr("is not a Tandem plug-in"));
   std::ofstream(file, std::ios::app | std::ios::binary) << "_ZTIN5argos14CCI_ControllerE";
-  EXPECT_THAT(error_of(file.string()), AllOf(HasSubstr("was built for ARGoS 3"), HasSubstr("-DCMAKE_PREFIX_PATH=")));
+  EXPECT_THAT(error_of(file.string()), AllOf(HasSubstr("was built for ARGoS 3"), HasSubstr("CMAKE_PREFIX_PATH=")));
   fs::remove(file);
 }
 

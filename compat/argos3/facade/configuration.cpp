@@ -61,6 +61,7 @@ struct detail::Data {
   void fill(const tandem::hal::Element& from, bool lines) {
     name = from.name;
     line = lines ? from.line : 0;
+    text = from.text;
     for (const auto& a : from.attributes) add(a.name, a.value);
     for (const auto& child : from.children) of(add(std::make_unique<Element>(child.name))).fill(child, lines);
   }
@@ -68,6 +69,7 @@ struct detail::Data {
     tandem::hal::Element out;
     out.name = name;
     out.line = line;
+    out.text = text;
     for (const auto& a : attributes) out.attributes.push_back({a->Name(), a->Value(), line});
     for (const auto& child : children) out.children.push_back(of(*child).plain());
     return out;

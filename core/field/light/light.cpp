@@ -31,8 +31,8 @@ void each_lamp(const SpaceStores& stores, double x_m, double y_m, double z_m, Se
   }
 }
 
-/// Reading of a foot-bot's sensor in ARGoS; the lamp's place is from the middle of the robot's base.
-double as_footbot(const FieldSpot& spot, double ahead_m, double aside_m, double above_m, double intensity) noexcept {
+/// Reading of ARGoS' sensors that fade; the lamp's place is from the middle of the robot's base.
+double fading(const FieldSpot& spot, double ahead_m, double aside_m, double above_m, double intensity) noexcept {
   const double reach = std::sqrt(ahead_m * ahead_m + aside_m * aside_m + above_m * above_m) / intensity;
   const double angle_rad =
       hal::atan2(spot.look_x * aside_m - spot.look_y * ahead_m, spot.look_x * ahead_m + spot.look_y * aside_m);
@@ -64,8 +64,8 @@ void LightField::sample(const FieldPlaces& places, double* values) const noexcep
         const FieldSpot& spot = places.spots[k];
         const double ahead = bx - spot.x_m;
         const double aside = by - spot.y_m;
-        if (curve_ == LightCurve::ArgosFootbot) {
-          values[k] = added(values[k], as_footbot(spot, bx, by, lamp.z_m - base_m, lamp.intensity));
+        if (curve_ == LightCurve::ArgosFading) {
+          values[k] = added(values[k], fading(spot, bx, by, lamp.z_m - base_m, lamp.intensity));
           continue;
         }
         const double above = lamp.z_m - base_m - spot.z_m;

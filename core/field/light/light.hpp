@@ -11,9 +11,9 @@ namespace tandem::core {
 /// to it, seen from above. Levels of several lamps add up, at most to 1. Boxes and cylinders cast shadows: on a whole
 /// robot, by whether they hide its axis, as high as the first of its sensors is.
 ///
-/// Sensors of ARGoS read otherwise: the generic ones (I / d)^2 of every lamp before them, whatever the angle; those of
-/// foot-bot and eye-bot exp(-2 d / I), d from the robot's middle and up to 2.5 I, less by the angle in right angles.
-enum class LightCurve : std::uint8_t { Facing, ArgosGeneric, ArgosFootbot };
+/// Sensors of ARGoS read otherwise: the generic ones (I / d)^2 of every lamp before them, whatever the angle; others,
+/// which fade, exp(-2 d / I), d from the robot's middle and up to 2.5 I, less by the angle in right angles.
+enum class LightCurve : std::uint8_t { Facing, ArgosGeneric, ArgosFading };
 
 class LightField final : public Field {
  public:

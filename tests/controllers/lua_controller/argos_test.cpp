@@ -42,7 +42,7 @@ TEST(ArgosScripts, GetTruthValuesFloatsAndBytesThatWrap) {
 /// An e-puck's sensor at +17 degrees, the first, looks at a wall: the ray is longer than the gap by 1 / cos 17°.
 std::string proximity_at(double gap_m, const std::string& root, const std::string& device) {
   Script script =
-      argos("function step() log(string.format('%.4f', robot.proximity[1].value or robot.proximity[1])) end");
+      argos("function step() local v = robot.proximity[1] log(string.format('%.4f', tonumber(v) or v.value)) end");
   script.root = root;
   script.sensors = device;
   const double x_m = -5.0 + 0.035 * 0.956304755963035 + gap_m + 0.05;  // of the wall, which is 0.1 thick

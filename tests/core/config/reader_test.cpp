@@ -137,7 +137,7 @@ TEST(Reader, TakesEverythingThatAnArgosFileSays) {
 
   ASSERT_EQ(out.problems.size(), 3U) << out.text();
   EXPECT_EQ(to_text(out.problems[0]), "file.xml:6: warning: <profiling> is left out; times are in --report");
-  EXPECT_EQ(out.problems[1].line, 32) << "no limit of wheels";
+  EXPECT_EQ(out.problems[1].line, 30) << "no limit of wheels";
   EXPECT_EQ(out.problems[2].line, 43);
   for (const Problem& problem : out.problems) EXPECT_TRUE(problem.warning && !problem.ignored);
 }

@@ -62,7 +62,7 @@ class CEntity : public CBaseConfigurableResource {
   virtual void JoinWorld();
   /// Takes it out of the world.
   virtual void LeaveWorld();
-  /// After a reset: finds what the world has of it under its id. False: nothing.
+  /// After a reset: finds it in the world by its id. False: not there.
   virtual bool FindInWorld();
 
  protected:

@@ -14,7 +14,7 @@ class CFloorEntity : public CEntity {
   explicit CFloorEntity(const std::string& str_id = "floor");
   ~CFloorEntity() override;
 
-  /// Where loop functions paint, what they say; else the shade of grey that ground sensors see.
+  /// Where loop functions paint, their shade; else the shade of grey that ground sensors see.
   CColor GetColorAtPoint(Real f_x, Real f_y);
   bool HasChanged() const;
   /// Has GetFloorColor asked for the whole floor again, before sensors look at it next.

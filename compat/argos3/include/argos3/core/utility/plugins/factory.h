@@ -24,7 +24,7 @@ struct SRegistration {
 /// From when its library is loaded until it is closed.
 void Register(SRegistration& registration);
 void Unregister(SRegistration& registration);
-/// Brings what makes a plug-in of a library: it lies in libtandem_argos3_plugin.a, which goes with every library of
+/// Brings the note that makes a plug-in of a library: it lies in libtandem_argos3_plugin.a, which goes with every library of
 /// ARGoS' names. An undefined one says that the library was not linked with argos3core_simulator.
 void LinkPlugin();
 

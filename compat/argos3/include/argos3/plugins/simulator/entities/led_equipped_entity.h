@@ -10,7 +10,7 @@
 
 namespace argos {
 
-/// A robot shows the colours of its LED actuator: what is set here lasts until its controller sets others. Without that
+/// A robot shows the colours of its LED actuator: colours that are set here last until its controller sets others. Without that
 /// actuator in its configuration they cannot be set.
 class CLEDEquippedEntity : public CComposableEntity {
  public:
