@@ -404,7 +404,7 @@ std::string device_name(std::string_view argos_name, hal::Role role, const hal::
   const std::string_view bare = without_robot(argos_name, catalog);
   if (bare.empty()) return std::string(argos_name);
   if (bare == "encoder" && sensor) return "wheel_encoders";
-  // ARGoS' e-puck plug-in names these otherwise.
+  // As a plug-in of ARGoS names them.
   if (bare == "wheels") return sensor ? "wheel_encoders" : "differential_steering";
   if (!sensor && (bare == "rgb_leds" || bare == "base_leds")) return "leds";
   return std::string(catalog.find<hal::PortType>(hal::port_entry(bare, role)) != nullptr ? bare : argos_name);

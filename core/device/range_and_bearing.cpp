@@ -31,7 +31,7 @@ struct Hearing {
              "Standard deviation of the sender's apparent place, along x and y; where robots fly, along z too.");
     v.number("packet_drop_prob", packet_drop_prob, hal::unit::none, {0.0, 1.0}, "Probability that a message is lost.");
     v.number("loss_probability", packet_drop_prob, hal::unit::none, {0.0, 1.0},
-             "The same, as ARGoS' e-puck plug-in names it.");
+             "The same, as a plug-in of ARGoS names it.");
   }
 };
 
@@ -513,7 +513,7 @@ void add_boards(std::vector<DeviceType>& types) {
   add_levels<Sends>(types, "Broadcasts to the robots in range in the next tick; failures where asked for.",
                     "Broadcasts to the robots in range in the next tick.",
                     "Broadcasts to the robots in range in the next tick, but for some failures.");
-  types.push_back(device_type<Sends, Level::Default>("medium", "The default, as ARGoS' e-puck plug-in names it."));
+  types.push_back(device_type<Sends, Level::Default>("medium", "The default, as a plug-in of ARGoS names it."));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "core/device/types.hpp"
 #include "core/field/light/light.hpp"
 #include "core/random/random.hpp"
+#include "hal/device/argos_curves.hpp"
 #include "hal/device/cliff.hpp"
 #include "hal/device/ring_sensors.hpp"
 #include "hal/open_params.hpp"
@@ -32,8 +33,7 @@ struct LightNoise : LevelNoise {
 /// As the sensor's name in the file tells.
 LightCurve light_curve(const std::string& curve, std::string_view written) noexcept {
   if (curve != "argos") return LightCurve::Facing;
-  const bool fades = written == "footbot_light" || written == "eyebot_light";
-  return fades ? LightCurve::ArgosFading : LightCurve::ArgosGeneric;
+  return hal::argos_light_fades(written) ? LightCurve::ArgosFading : LightCurve::ArgosGeneric;
 }
 
 /// Adds noise to `count` levels and keeps them within [0, 1].

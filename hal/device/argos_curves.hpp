@@ -20,6 +20,11 @@ constexpr ArgosProximity argos_proximity(std::string_view written) noexcept {
   return written == "proximity" ? ArgosProximity::Generic : ArgosProximity::Footbot;
 }
 
+/// Whether a light sensor, by its name in a file, reads less with distance as foot-bot's and eye-bot's do.
+constexpr bool argos_light_fades(std::string_view written) noexcept {
+  return written == "footbot_light" || written == "eyebot_light";
+}
+
 namespace argos_curves {
 // The formulas of ARGoS 3: exp(-d); 1 up to kContact_m and then kScale / (d + kOffset_m); and a parabola that was
 // fitted to e-pucks, up to 5 cm.

@@ -14,6 +14,7 @@ import tempfile
 import unittest
 import unittest.mock
 
+from frames import EXPERIMENT
 from page import HERE, Keys, Page, Run, difference, eventually, read_ppm, write_ppm
 
 PROGRAM = os.path.abspath(sys.argv[1]) if len(sys.argv) > 1 else ""
@@ -372,6 +373,26 @@ class TestRun(WithBrowser):
         finally:
             page.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
             page.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+
+
+class TestLimits(unittest.TestCase):
+    def test_a_picture_costs_no_more_than_the_documentation_says(self):
+        folder = tempfile.mkdtemp(prefix="tandem-limits-")
+        path = os.path.join(folder, "many.xml")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(EXPERIMENT.format(size=20, half=9.7, robots=1000))
+        run = view(path, "--paused")
+        self.addCleanup(run.stop)
+        page = Page(800, 600)
+        self.addCleanup(page.close)
+        page.open(run.address)
+        pictures = page.js("tandem.view.pictures")
+        page.js("tandem.camera.orbit(0.3, 0)")
+        page.until("a picture with everything", "tandem.view.pictures > arguments[0]", pictures)
+        cost = page.js("tandem.view.renderer.info.render")
+        self.assertGreater(page.js("tandem.robots.shown.full"), 100)
+        self.assertLessEqual(cost["calls"], 12 + 6)  # one kind, no lamp
+        self.assertLessEqual(cost["triangles"], 700_000)
 
 
 class TestLink(WithBrowser):
