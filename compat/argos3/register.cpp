@@ -20,7 +20,12 @@ void register_argos3(hal::Registrar& registrar) {
   static constexpr compat::argos3::Facade kFacade = {"argos3",
                                                      "ARGoS 3's classes for sources that were written for it"};
   registrar.add(kFacade);
-  registrar.add(compat::argos3::look_hook());
+  static const core::HookType kLook = [] {
+    core::HookType look = compat::argos3::look_hook();
+    look.comes_with = &compat::argos3::is_controller_of_argos;
+    return look;
+  }();
+  registrar.add(kLook);
 }
 
 }  // namespace tandem::app

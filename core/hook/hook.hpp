@@ -121,7 +121,8 @@ struct HookType {
   std::unique_ptr<Hook> (*make)(const Element& options, Problems& problems) = nullptr;
   /// Shows its parameters to `visitor`, for the manual. Null: it reads its element by itself.
   void (*describe)(hal::ParamVisitor& visitor) = nullptr;
-  bool implied = false;  ///< of the program itself: every world has one, after those of the file
+  /// Of the program itself: whether a world with such a controller has one, after those of the file. Null: none has.
+  bool (*comes_with)(const hal::ControllerType& controller) = nullptr;
 };
 
 /// The table of hook class `T`, constructed from `(const T::Params&)`.

@@ -305,7 +305,7 @@ Scenario World::Impl::completed(const Scenario& changed) const {
   Scenario next = changed;
   Problems ignored;
   name_media(next, loader->catalog(), ignored);
-  add_implied_hooks(next, loader->catalog());
+  add_implied_hooks(next, *loader);
   for (const bool as_before : {true, false}) {
     for (std::size_t i = 0; i < std::min(next.robots.size(), scenario.robots.size()); ++i)
       next.robots[i].controller = as_before ? scenario.robots[i].controller : changed.robots[i].controller;

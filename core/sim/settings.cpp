@@ -168,12 +168,18 @@ void put_seed(Scenario& scenario, std::uint64_t seed) {
 
 }  // namespace
 
-void add_implied_hooks(Scenario& scenario, const hal::Catalog& catalog) {
-  for (const HookType* type : catalog.all<HookType>()) {
+void add_implied_hooks(Scenario& scenario, hal::PluginLoader& loader) {
+  for (const HookType* type : loader.catalog().all<HookType>()) {
     const auto same = [&](const HookConfig& hook) {
       return hook.library == hal::Catalog::kInside && hook.label == type->name;
     };
-    if (!type->implied || std::any_of(scenario.hooks.begin(), scenario.hooks.end(), same)) continue;
+    const auto wants_it = [&](const ControllerConfig& config) {
+      const auto controller = loader.get<hal::ControllerType>(config.library, config.label);
+      return controller.ok() && type->comes_with(*controller.value());
+    };
+    if (type->comes_with == nullptr || std::ranges::none_of(scenario.controllers, wants_it) ||
+        std::ranges::any_of(scenario.hooks, same))
+      continue;
     HookConfig& config = scenario.hooks.emplace_back();
     config.library = hal::Catalog::kInside;
     config.label = config.options.name = type->name;

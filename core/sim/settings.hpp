@@ -15,8 +15,8 @@ namespace tandem::core {
 /// uses is left as it is. Call once all parts have been made: libraries are open, and nothing is unknown.
 void complete_settings(Scenario& scenario, hal::PluginLoader& loader, std::uint64_t seed);
 
-/// Adds the hooks that every world has (HookType::implied), where they are not there.
-void add_implied_hooks(Scenario& scenario, const hal::Catalog& catalog);
+/// Adds the hooks that come with the controllers (HookType::comes_with), where they are not there.
+void add_implied_hooks(Scenario& scenario, hal::PluginLoader& loader);
 
 /// Whether two elements say the same: attributes in any order, numbers by value ("0.1" and "0.10").
 bool same_settings(const Element& a, const Element& b);

@@ -402,7 +402,7 @@ void World::Impl::make_hook(std::size_t i, Problems& problems) {
 }
 
 void World::Impl::make_hooks(Problems& problems) {
-  add_implied_hooks(scenario, loader->catalog());
+  add_implied_hooks(scenario, *loader);
   for (const HookConfig& config : scenario.hooks) {
     const auto type = loader->get<HookType>(config.library, config.label);
     hook_names.emplace_back(type.ok() ? type.value()->name : std::string_view(config.label));

@@ -1,5 +1,6 @@
 #include "compat/argos3/control/controller_types.hpp"
 
+#include <algorithm>
 #include <array>
 #include <mutex>
 #include <stdexcept>
@@ -72,6 +73,10 @@ void register_controllers(const std::vector<const SRegistration*>& registrations
   for (const SRegistration* const one : registrations) {
     if (one->Kind == std::string_view("controller")) registrar.add(type_of(*one));
   }
+}
+
+bool is_controller_of_argos(const hal::ControllerType& type) noexcept {
+  return std::find(kReaders.begin(), kReaders.end(), type.read_params) != kReaders.end();
 }
 
 }  // namespace tandem::compat::argos3

@@ -208,8 +208,7 @@ std::unique_ptr<core::Hook> make_look(const core::Element& options, core::Proble
 }  // namespace
 
 const core::HookType& look_hook() {
-  static const core::HookType type = {"argos3", "Lets ARGoS' CSimulator see the world; does nothing else.", &make_look,
-                                      nullptr, true};
+  static const core::HookType type = {"argos3", "Lets ARGoS' CSimulator see the world; does nothing else.", &make_look};
   return type;
 }
 

@@ -68,14 +68,14 @@ TEST(Incidents, OfAWorldNameTheFirstRobotAndPlacesInMillimetres) {
   EXPECT_EQ(world->incidents().controllers_thrown, 5U);
 
   Scene leaving(1.0);
-  leaving.param("left", "0.1").param("right", "0.1").robot("a", 0.4, 0.1234567).robot("b", 0.4, -0.2);
+  leaving.param("left", "0.1").param("right", "0.1").robot("a", 0.4, -0.1234567).robot("b", 0.4, 0.2);
   leaving.scenario.escape = EscapePolicy::Stop;
   auto left = make(leaving);
   ASSERT_TRUE(left.world) << left.all_problems();
   run(*left.world, 40);
   ASSERT_EQ(left->incidents().first.size(), 1U);
   EXPECT_THAT(left->incidents().first[0],
-              testing::MatchesRegex("robot 'a' \\(and 1 more\\) left the arena at \\(0\\.5[0-9]*, 0\\.123\\) at tick "
+              testing::MatchesRegex("robot 'a' \\(and 1 more\\) left the arena at \\(0\\.5[0-9]*, -0\\.123\\) at tick "
                                     "[0-9]+: stopped at the edge"));
 }
 
