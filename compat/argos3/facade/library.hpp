@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hal/catalog.hpp"
+#include "hal/surface.hpp"
 
 namespace tandem::compat::argos3 {
 
@@ -13,6 +14,7 @@ namespace tandem::compat::argos3 {
 struct Facade {
   static constexpr std::string_view kCategory = "argos3";
   static constexpr std::uint32_t kNumber = 1;
+  using Crosses = hal::Layouts<argos::tandem_detail::SRegistration>;
   std::string_view name, summary;
 };
 
