@@ -56,6 +56,7 @@ class WheelsOf final : public ActuatorOn<Cci, hal::WheelSpeeds> {
 template <class Cci>
 class EncodersOf final : public SensorOn<Cci, hal::WheelEncoders> {
  public:
+  EncodersOf() { this->used = true; }  // it compares with the tick before
   void begin() override { left_m_ = right_m_ = 0.0; }
   void sense() override {
     const hal::WheelEncoders& encoders = this->port();
@@ -116,12 +117,26 @@ class PlainGripper final : public ActuatorOn<argos::CCI_GripperActuator, hal::Gr
 
 class ScannerMotor final : public ActuatorOn<argos::CCI_FootBotDistanceScannerActuator, hal::ScannerDrive> {
  public:
-  void SetAngle(const CRadians& angle) override { port().go_to(angle.GetValue()); }
-  void SetRPM(Real rpm) override { port().turn(rpm * kRad_s_per_rpm); }
+  void reset() override { port() = last_; }
+  void SetAngle(const CRadians& angle) override {
+    port().go_to(angle.GetValue());
+    last_ = port();
+  }
+  void SetRPM(Real rpm) override {
+    port().turn(rpm * kRad_s_per_rpm);
+    last_ = port();
+  }
   void Enable() override {
     if (port().mode == hal::ScannerMode::Off) port().go_to(port().angle_rad);
+    last_ = port();
   }
-  void Disable() override { port().turn_off(); }
+  void Disable() override {
+    port().turn_off();
+    last_ = port();
+  }
+
+ private:
+  hal::ScannerDrive last_;
 };
 
 class ScannerDistances final : public SensorOn<argos::CCI_FootBotDistanceScannerSensor, hal::DistanceScanner> {
@@ -182,21 +197,20 @@ class HeadOf final : public ActuatorOn<argos::CCI_PanTiltCameraActuator, hal::Pa
 
 std::span<const DeviceClass> motion_classes() {
   using namespace argos;
-  static const std::array all = {
-      device_class<WheelsOf<CCI_DifferentialSteeringActuator>, hal::WheelSpeeds>("differential_steering"),
-      device_class<WheelsOf<CCI_EPuckWheelsActuator>, hal::WheelSpeeds>("epuck_wheels"),
-      device_class<EncodersOf<CCI_DifferentialSteeringSensor>, hal::WheelEncoders>("differential_steering"),
-      device_class<EncodersOf<CCI_FootBotEncoderSensor>, hal::WheelEncoders>("footbot_encoder"),
-      device_class<EncodersOf<CCI_EPuckEncoderSensor>, hal::WheelEncoders>("epuck_encoder"),
-      device_class<TurretOf, hal::TurretDrive>("footbot_turret"),
-      device_class<TurretAngle, hal::TurretEncoder>("footbot_turret_encoder"),
-      device_class<FootbotGripper, hal::GripperDrive>("footbot_gripper"),
-      device_class<PlainGripper, hal::GripperDrive>("gripper"),
-      device_class<ScannerMotor, hal::ScannerDrive>("footbot_distance_scanner"),
-      device_class<ScannerDistances, hal::DistanceScanner>("footbot_distance_scanner"),
-      device_class<FlightTo, hal::QuadrotorPosition>("quadrotor_position"),
-      device_class<FlightWith, hal::QuadrotorSpeed>("quadrotor_speed"),
-      device_class<HeadOf, hal::PanTiltDrive>("pan_tilt_camera")};
+  static const std::array all = {device_class<WheelsOf<CCI_DifferentialSteeringActuator>>("differential_steering"),
+                                 device_class<WheelsOf<CCI_EPuckWheelsActuator>>("epuck_wheels"),
+                                 device_class<EncodersOf<CCI_DifferentialSteeringSensor>>("differential_steering"),
+                                 device_class<EncodersOf<CCI_FootBotEncoderSensor>>("footbot_encoder"),
+                                 device_class<EncodersOf<CCI_EPuckEncoderSensor>>("epuck_encoder"),
+                                 device_class<TurretOf>("footbot_turret"),
+                                 device_class<TurretAngle>("footbot_turret_encoder"),
+                                 device_class<FootbotGripper>("footbot_gripper"),
+                                 device_class<PlainGripper>("gripper"),
+                                 device_class<ScannerMotor>("footbot_distance_scanner"),
+                                 device_class<ScannerDistances>("footbot_distance_scanner"),
+                                 device_class<FlightTo>("quadrotor_position"),
+                                 device_class<FlightWith>("quadrotor_speed"),
+                                 device_class<HeadOf>("pan_tilt_camera")};
   return all;
 }
 
