@@ -69,7 +69,7 @@ void Kept::take(hal::Robot& robot) {
   }
   log_ = robot.log();
   set_run_seed(robot.run_seed());
-  set_seed(hal::seed_of(robot.run_seed(), robot.id()));
+  set_seed(hal::seed_of(robot.run_seed(), robot.id()), robot.id());
 }
 
 Kept::~Kept() {

@@ -473,6 +473,29 @@ TEST(ArgosChance, BeginsAnewAndHasCategories) {
   CRandom::CreateCategory("mine", 5);
   EXPECT_EQ(CRandom::CreateRNG("mine")->Uniform(unit), mine);
   CRandom::RemoveCategory("mine");
+  CRandom::CreateCategory("world", 42);
+  const auto of_world = [&](Told& context) {
+    const tandem::compat::argos3::ContextScope scope(context);
+    return CRandom::CreateRNG("world");
+  };
+  Told loops, robot;
+  loops.set_seed(1);
+  robot.set_seed(1, "ep0");
+  CRandom::CRNG *of_loops = of_world(loops), *of_robot = of_world(robot);
+  const Real drawn = of_loops->Uniform(unit), drawn_by_robot = of_robot->Uniform(unit);
+  EXPECT_NE(drawn, drawn_by_robot);
+  loops.set_seed(2);
+  EXPECT_EQ(of_loops->Uniform(unit), drawn) << "a category of one's own has its seed, whatever the run's";
+  CRandom::GetCategory("world").ResetRNGs();
+  EXPECT_EQ(of_robot->Uniform(unit), drawn_by_robot);
+  CRandom::SetSeedOf("world", 43);
+  CRandom::GetCategory("world").ReseedRNGs();
+  const Real other_world = of_loops->Uniform(unit);
+  EXPECT_NE(other_world, drawn);
+  EXPECT_NE(of_robot->Uniform(unit), drawn_by_robot);
+  CRandom::Reset();
+  EXPECT_EQ(of_loops->Uniform(unit), other_world);
+  CRandom::RemoveCategory("world");
   CRandom::CRNG copy(*a);
   EXPECT_EQ(copy.Uniform(unit), a->Uniform(unit));
 }
