@@ -15,7 +15,7 @@ class CFaultyLoop : public CLoopFunctions {
     }
   }
   virtual void Destroy() {
-    LOG << "ended" << std::endl;
+    LOG << "destroyed" << std::endl;
     if (m_strWhere == "Destroy") THROW_ARGOSEXCEPTION("the gate is stuck");
   }
   virtual void PostStep() {
