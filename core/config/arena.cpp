@@ -395,7 +395,8 @@ class ArenaReader {
     }
     item.controller = found->second;
     reading_.once(e, "params", [&](const Element& params) {
-      item.params = overridden(out_.controllers[item.controller].params, params);
+      // ARGoS takes a robot's own instead of the configuration's.
+      item.params = params.argos ? params : overridden(out_.controllers[item.controller].params, params);
     });
   }
 

@@ -155,6 +155,18 @@ TEST(ArgosFiles, MaySendLongerMessages) {
   EXPECT_THAT(with_size("tandem", "30").text(), HasSubstr("out of range"));
 }
 
+TEST(ArgosFiles, TakeARobotsParametersInsteadOfItsConfigurations) {
+  for (const std::string root : {"argos-configuration", "tandem"}) {
+    const Outcome out = read("<" + root + R"(><framework><experiment/></framework>
+<controllers><wander id="w" library="wander"><params a="1" b="2"/></wander></controllers>
+<arena size="4,4,1"><e-puck id="a"><body position="0,0,0"/><controller config="w"><params a="3"/></controller></e-puck>
+</arena></)" + root + ">");
+    const Element& params = out.good().robots.at(0).params.value();
+    EXPECT_EQ(*params.attribute("a"), "3");
+    EXPECT_EQ(params.attribute("b") == nullptr, root == "argos-configuration") << root;
+  }
+}
+
 TEST(ArgosFiles, GiveTheEpucksPluginItsPackets) {
   std::string text = file("argos-configuration");
   const auto payload = [&] {
