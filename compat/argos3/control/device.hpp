@@ -21,10 +21,10 @@ struct Fitting {
 
   /// A port that the configuration lists, too; null: it does not.
   template <class Port>
-  const Port* find() const {
+  Port* find() const {
     for (const hal::ListedDevice& device : list.devices()) {
       if (device.port->name == Port::kName && device.port->role == hal::port_type<Port>().role)
-        return static_cast<const Port*>(list.port(*device.port));
+        return static_cast<Port*>(list.port(*device.port));
     }
     return nullptr;
   }

@@ -160,18 +160,44 @@ class ScannerDistances final : public SensorOn<argos::CCI_FootBotDistanceScanner
   }
 };
 
+/// Where the configuration lists `flight_task` and `flight_state`, commands have a robot that stands on the ground take
+/// off first. Without them a real one stays there.
+class TakeOff {
+ public:
+  void fit(const Fitting& fitting) {
+    task_ = fitting.find<hal::FlightTask>();
+    state_ = fitting.find<hal::FlightState>();
+  }
+  void order() noexcept {
+    if (task_ == nullptr || state_ == nullptr) return;
+    const bool stands = state_->phase == hal::FlightPhase::Off || state_->phase == hal::FlightPhase::Landed ||
+                        state_->phase == hal::FlightPhase::TakingOff;
+    task_->order = stands ? hal::FlightOrder::TakeOff : hal::FlightOrder::Fly;
+  }
+
+ private:
+  hal::FlightTask* task_ = nullptr;
+  const hal::FlightState* state_ = nullptr;
+};
+
 class FlightTo final : public ActuatorOn<argos::CCI_QuadRotorPositionActuator, hal::QuadrotorPosition> {
  public:
-  void SetAbsolutePosition(const CVector3& p) override { port().set(p.GetX(), p.GetY(), p.GetZ(), port().yaw_rad); }
+  void SetAbsolutePosition(const CVector3& p) override { go_to({p.GetX(), p.GetY(), p.GetZ()}); }
   void SetRelativePosition(const CVector3& p) override {
-    const auto p_WT = hal::argos::from_body(place(), {p.GetX(), p.GetY(), p.GetZ()});
-    port().set(p_WT[0], p_WT[1], p_WT[2], port().yaw_rad);
+    go_to(hal::argos::from_body(place(), {p.GetX(), p.GetY(), p.GetZ()}));
   }
   void SetAbsoluteYaw(const CRadians& yaw) override { port().yaw_rad = yaw.GetValue(); }
   void SetRelativeYaw(const CRadians& yaw) override { port().yaw_rad = hal::argos::yaw_of(place()) + yaw.GetValue(); }
 
  private:
-  void fit(const Fitting& fitting) override { place_ = fitting.find<hal::Positioning>(); }
+  void fit(const Fitting& fitting) override {
+    place_ = fitting.find<hal::Positioning>();
+    take_off_.fit(fitting);
+  }
+  void go_to(const std::array<double, 3>& p_W) {
+    port().set(p_W[0], p_W[1], p_W[2], port().yaw_rad);
+    take_off_.order();
+  }
   const hal::Positioning& place() const {
     if (place_ == nullptr)
       THROW_ARGOSEXCEPTION(
@@ -179,12 +205,20 @@ class FlightTo final : public ActuatorOn<argos::CCI_QuadRotorPositionActuator, h
     return *place_;
   }
   const hal::Positioning* place_ = nullptr;
+  TakeOff take_off_;
 };
 
 class FlightWith final : public ActuatorOn<argos::CCI_QuadRotorSpeedActuator, hal::QuadrotorSpeed> {
  public:
-  void SetLinearVelocity(const CVector3& v) override { port().set(v.GetX(), v.GetY(), v.GetZ(), port().yaw_rad_s); }
+  void SetLinearVelocity(const CVector3& v) override {
+    port().set(v.GetX(), v.GetY(), v.GetZ(), port().yaw_rad_s);
+    take_off_.order();
+  }
   void SetRotationalSpeed(const CRadians& speed) override { port().yaw_rad_s = speed.GetValue(); }
+
+ private:
+  void fit(const Fitting& fitting) override { take_off_.fit(fitting); }
+  TakeOff take_off_;
 };
 
 class HeadOf final : public ActuatorOn<argos::CCI_PanTiltCameraActuator, hal::PanTiltDrive> {

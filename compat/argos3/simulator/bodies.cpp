@@ -103,6 +103,8 @@ void CEmbodiedEntity::ReadWorld() const {
     CVector3 offset = anchor.OffsetPosition;
     anchor.Position = origin.Position + offset.Rotate(origin.Orientation);
     anchor.Orientation = origin.Orientation * anchor.OffsetOrientation;
+    if (anchor.Id == "turret" && in_world(m_sBody))
+      anchor.Orientation *= CQuaternion(CRadians(world().turret_rad(m_sBody)), CVector3::Z);
   }
 }
 

@@ -45,7 +45,7 @@ CLEDEntity::~CLEDEntity() {}
 const CColor& CLEDEntity::GetColor() const {
   if (m_pcOwner == nullptr) return m_cColor;
   const Body body = body_of(*m_pcOwner);
-  if (body.Kind == Body::NONE) return m_cColor;
+  if (body.Kind == Body::NONE || m_bUnlisted) return m_cColor;
   const std::vector<Led> leds = world().leds(body);
   if (m_unNumber < leds.size())
     m_cColor.Set(leds[m_unNumber].color.r, leds[m_unNumber].color.g, leds[m_unNumber].color.b);
@@ -55,7 +55,7 @@ void CLEDEntity::SetColor(const CColor& color) {
   m_cColor = color;
   if (m_pcOwner == nullptr) return;
   const Body body = body_of(*m_pcOwner);
-  if (body.Kind != Body::NONE) world().set_led(body, m_unNumber, rgb_of(color));
+  if (body.Kind != Body::NONE) m_bUnlisted = !world().set_led(body, m_unNumber, rgb_of(color));
 }
 std::string CLEDEntity::GetTypeDescription() const {
   return "led";
@@ -247,6 +247,7 @@ CRobotEntity::CRobotEntity(const std::string& kind, const std::string& id, const
   for (CEntity* const component : parts) {
     if (component != nullptr) AddComponent(*component);
   }
+  if (kind == "foot-bot") m_pcBody->AddAnchor("turret");
 }
 CRobotEntity::~CRobotEntity() {}
 CWheeledEntity& CRobotEntity::Wheels() {

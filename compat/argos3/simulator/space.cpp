@@ -223,8 +223,9 @@ bool file_has_floor(bool& painted) {
   TConfigurationNode& root = CSimulator::GetInstance().GetConfigurationRoot();
   TConfigurationNode* const arena = root.FirstChildElement("arena", false);
   TConfigurationNode* const floor = arena == nullptr ? nullptr : arena->FirstChildElement("floor", false);
-  painted = floor != nullptr && floor->GetAttribute("source") == "loop_functions";
-  return floor != nullptr;
+  const std::string source = floor == nullptr ? std::string() : floor->GetAttribute("source");
+  painted = source == "loop_functions";
+  return painted || source == "image";  // else it is the grey one of every arena
 }
 
 }  // namespace

@@ -328,6 +328,9 @@ std::string WorldAdapter::set_battery(const Body& robot, double charge) {
   return text_of(space_->set_battery(robot_id(robot), charge));
 }
 
+double WorldAdapter::turret_rad(const Body& robot) const {
+  return space_->turret_rad(robot_id(robot));
+}
 std::vector<std::uint8_t> WorldAdapter::message(const Body& robot) const {
   std::vector<std::uint8_t> bytes(rab_bytes(robot), 0);
   with_message(*space_, robot_id(robot), [&](const auto& sends) {

@@ -59,6 +59,7 @@ class WorldAdapter final : public WorldDoor {
   bool set_led(const Body& body, std::size_t number, Rgb8 color) override;
   double battery(const Body& robot) const override;
   std::string set_battery(const Body& robot, double charge) override;
+  double turret_rad(const Body& robot) const override;
   std::vector<std::uint8_t> message(const Body& robot) const override;
   bool set_message(const Body& robot, const std::vector<std::uint8_t>& bytes) override;
   double rab_range_m(const Body& robot) const override;

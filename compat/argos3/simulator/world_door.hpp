@@ -96,6 +96,7 @@ class WorldDoor {
   virtual bool set_led(const Body& body, std::size_t number, Rgb8 color) = 0;
   virtual double battery(const Body& robot) const = 0;  ///< 0 to 1
   virtual std::string set_battery(const Body& robot, double charge) = 0;
+  virtual double turret_rad(const Body& robot) const = 0;
   virtual std::vector<std::uint8_t> message(const Body& robot) const = 0;
   virtual bool set_message(const Body& robot, const std::vector<std::uint8_t>& bytes) = 0;
   virtual double rab_range_m(const Body& robot) const = 0;
