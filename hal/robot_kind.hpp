@@ -223,7 +223,8 @@ const PartType& part_type() {
   return type;
 }
 
-/// A part that robots of a kind may be built with besides. ARGoS files mean it by listing its device.
+/// A part that robots of a kind may be built with besides, or in place of their own. ARGoS files mean it by listing its
+/// device, under the name of the port or one of ARGoS' own.
 struct ExtraPart {
   static constexpr std::string_view kCategory = "extra_part";
   using Crosses = Layouts<AnyPart, detail::PartTable>;

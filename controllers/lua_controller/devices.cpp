@@ -157,11 +157,6 @@ void fill_ground_ring(lua_State* L, Interpreter& in, std::size_t device, const v
 
 // --- range and bearing ---
 
-std::size_t payload_of(const Interpreter& in) {
-  const auto* const board = in.kind().part<hal::RangeAndBearingPart>();
-  return board == nullptr ? 0 : static_cast<std::size_t>(board->payload);
-}
-
 std::uint8_t byte_at(lua_State* L, int index, int argument) {
   const double value = lua_type(L, index) == LUA_TNUMBER ? lua_tonumber(L, index) : -1.0;
   if (Interpreter::of(L).script().argos && lua_type(L, index) == LUA_TNUMBER && std::isfinite(value)) {
@@ -175,7 +170,7 @@ std::uint8_t byte_at(lua_State* L, int index, int argument) {
 template <class Port>
 int set_data(lua_State* L) {
   auto& message = port_of<Port>(L);
-  const std::size_t size = payload_of(Interpreter::of(L));
+  const std::size_t size = hal::message_bytes(Interpreter::of(L).kind(), message.payload.size());
   if (lua_gettop(L) == 1) {
     luaL_checktype(L, 1, LUA_TTABLE);
     if (static_cast<std::size_t>(luaL_len(L, 1)) != size)

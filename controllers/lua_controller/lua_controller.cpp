@@ -138,10 +138,9 @@ void LuaController::start_outputs() {
     if (in.devices()[i].api == nullptr || type.plain_name() != hal::RangeAndBearingSend::kName ||
         type.role != hal::Role::Actuator)
       continue;
-    const auto* const board = in.kind().part<hal::RangeAndBearingPart>();
     hal::set_value(actor_.ports[i], *type.field("sending"), 0, 1.0);
     hal::set_value(actor_.ports[i], *type.field("size"), 0,
-                   board == nullptr ? 0.0 : static_cast<double>(board->payload));
+                   static_cast<double>(hal::message_bytes(in.kind(), type.field("payload")->count)));
   }
 }
 

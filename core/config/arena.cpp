@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/config/reading.hpp"
+#include "hal/device/range_and_bearing.hpp"
 #include "hal/element_options.hpp"
 #include "hal/named_colors.hpp"
 
@@ -285,13 +286,15 @@ class ArenaReader {
     if (e.argos && e.child("controller") != nullptr && e.child("bridge") == nullptr) add_extras(item, *own);
     if (e.argos && own->drive() != nullptr && e.child("bridge") == nullptr) lift_limit(e, *own);
     item.id = reading_.read(e, schema::RobotOfKind{{}, *own}).id;
+    const auto* const board = own->part<hal::RangeAndBearingPart>();
+    if (e.child("bridge") != nullptr && board != nullptr && board->payload > std::int64_t{hal::kRabPayloadMax})
+      reading_.error(e, "rab_data_size",
+                     "real robots send messages of " + std::to_string(hal::kRabPayloadMax) +
+                         " bytes at most: leave out the <bridge>, or more bytes");
     const std::string said = attributes_of(*own);
     const auto* const fitted = reading_.fitted(e.name);
     if (fitted != nullptr) {
-      for (const hal::AnyPart& part : *fitted) {
-        own->remove(part.name());
-        own->add(part);
-      }
+      for (const hal::AnyPart& part : *fitted) replace(*own, part);
     }
     if (said != usual || fitted != nullptr)
       item.own_kind = own_kinds_.try_emplace(e.name + said, std::move(own)).first->second;
@@ -300,11 +303,20 @@ class ArenaReader {
   /// Parts that robots of the kind may have besides, and that the configuration of its controller means.
   void add_extras(const RobotItem& item, hal::RobotKind& kind) {
     if (item.controller >= out_.controllers.size()) return;
-    for (const DeviceChoice& choice : out_.controllers[item.controller].sensors) {
-      const auto* const extra =
-          reading_.catalog().find<hal::ExtraPart>(hal::ExtraPart::entry(kind.name, choice.device));
-      if (extra != nullptr) kind.add(extra->make());
+    const ControllerConfig& config = out_.controllers[item.controller];
+    for (const std::vector<DeviceChoice>* choices : {&config.sensors, &config.actuators}) {
+      for (const DeviceChoice& choice : *choices) {
+        for (const std::string& device : {choice.device, choice.options.name}) {
+          const auto* const extra = reading_.catalog().find<hal::ExtraPart>(hal::ExtraPart::entry(kind.name, device));
+          if (extra != nullptr) replace(kind, extra->make());
+        }
+      }
     }
+  }
+
+  static void replace(hal::RobotKind& kind, const hal::AnyPart& part) {
+    kind.remove(part.name());
+    kind.add(part);
   }
 
   /// ARGoS limits no wheel.
@@ -383,7 +395,8 @@ class ArenaReader {
     }
     item.controller = found->second;
     reading_.once(e, "params", [&](const Element& params) {
-      item.params = overridden(out_.controllers[item.controller].params, params);
+      // ARGoS takes a robot's own instead of the configuration's.
+      item.params = params.argos ? params : overridden(out_.controllers[item.controller].params, params);
     });
   }
 

@@ -18,6 +18,8 @@
 
 namespace tandem::core {
 
+struct Scenario;  // core/scenario/scenario.hpp
+
 /// Lets a hook keep moments of the run and go back to them. Requests take effect when the current step is over (those
 /// of `before_run`: before the first step), in the order in which they were made; those of `after_run` have none.
 class Checkpoints {
@@ -44,6 +46,7 @@ struct HookContext {
   Checkpoints& checkpoints;
   Sketch& sketch;
   Measures& measures;
+  const Scenario& scenario;  ///< what runs
 
   /// The robot's controller, to look at and to change between steps; null when it is of another class or the robot is
   /// gone. Both plug-ins must be built from the same header of the class.
@@ -111,7 +114,7 @@ inline void Hook::restore(const std::any& saved) {
 /// A class of hooks: what a plug-in registers.
 struct HookType {
   static constexpr std::string_view kCategory = "hook";
-  static constexpr std::uint32_t kNumber = 6;
+  static constexpr std::uint32_t kNumber = 7;
   using Crosses =
       hal::Layouts<Hook, HookContext, Space, Checkpoints, Sketch, Sketch::Shape, Sketch::Point, Measures, Element,
                    Problem, hal::ParamVisitor, hal::Controls, hal::RobotKind, hal::RobotKind::Crosses>;

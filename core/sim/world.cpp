@@ -277,7 +277,7 @@ void World::Impl::report_messages() {
 
 void World::Impl::paint_fields() {
   for (const Fields::Entry& entry : stores().fields.all()) {
-    if (!entry.field->painted_by_hooks() || !entry.field->unpainted() || hooks.empty()) continue;
+    if (!entry.field->painted_by_hooks() || !entry.field->unpainted()) continue;
     hook_phase = entry.name.c_str();
     std::size_t who = 0;
     const Painter painter = [&, name = std::string_view(entry.name)](double x, double y, double painted) {

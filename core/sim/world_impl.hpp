@@ -267,7 +267,7 @@ struct World::Impl final : hal::RobotLog::Sink {
   std::vector<ControlValue> control_values(std::size_t hook);
   hal::Status put_back_controls(const std::vector<std::vector<ControlValue>>& saved);
   HookContext hook_context() {
-    return {space, tick, scenario.ticks_per_second, seed, kept_checkpoints, space.sketch(), measures};
+    return {space, tick, scenario.ticks_per_second, seed, kept_checkpoints, space.sketch(), measures, scenario};
   }
   DeviceContext device_context(std::size_t block) {
     SpaceStores& s = stores();

@@ -303,7 +303,7 @@ std::unique_ptr<Field> World::Impl::make_field(const FieldType& type, const Scen
   const auto written = std::ranges::find(from.fields, type.name, &Element::name);
   const Element& element = written == from.fields.end() ? nothing : *written;
   std::unique_ptr<Field> field = type.make(element, area, problems);
-  if (field->painted_by_hooks() && from.hooks.empty()) {
+  if (field->painted_by_hooks() && from.hooks.empty() && !element.argos) {
     problems.push_back(problem_at(
         element, "the " + std::string(type.name) + " is to be painted by loop functions, but there are none"));
   }

@@ -44,6 +44,12 @@ struct RangeAndBearingPart {
   }
 };
 
+/// Bytes of a message of the robot's board that a port with so much room holds.
+inline std::size_t message_bytes(const RobotKind& kind, std::size_t room) noexcept {
+  const auto* const board = kind.part<RangeAndBearingPart>();
+  return board == nullptr ? 0 : std::min(static_cast<std::size_t>(board->payload), room);
+}
+
 /// Message of up to `kBytes` bytes to broadcast in this tick. Safe value: nothing.
 template <std::size_t kBytes>
 struct SentMessage : Command {

@@ -61,6 +61,10 @@ std::vector<InfraredResponse> response() {
           {0.04, 158.03}, {0.05, 120.0},    {0.06, 104.09},  {0.07, 67.19},   {0.1, 0.0}};
 }
 
+RangeAndBearingPart board(std::int64_t payload, std::string source) {
+  return {.range_m = 0.8, .height_m = kHeight_m, .payload = payload, .source = std::move(source)};
+}
+
 RobotKind make() {
   RobotKind kind;
   kind.name = kName;
@@ -103,8 +107,7 @@ RobotKind make() {
                        .low_charge = 0.0,
                        .low_V = 3.4,
                        .source = "GCtronic's library: older boards say \"empty\" below 3.4 V"});
-  kind.add(RangeAndBearingPart{
-      .range_m = 0.8, .height_m = kHeight_m, .payload = 2, .source = "ARGoS 3; the board is on top"});
+  kind.add(board(2, "ARGoS 3; the board is on top"));
   kind.add(LedsPart{.mounts = ring_leds(), .source = "GCtronic's library; height rounded"});
   kind.add(BodyLedPart{{.mount = {0, 0, 0, 0.03}, .source = "GCtronic's library; height rounded"}});
   kind.add(FrontLedPart{{.mount = on_rim(0, 1, 0, kRadius_m, 0.03), .source = "GCtronic's library; height rounded"}});
@@ -149,6 +152,13 @@ const ExtraPart& omnidirectional_camera() {
                                       .aperture_rad = radians(70),
                                       .source = "ARGoS' separate e-puck plug-in: aperture and height"});
       }};
+  return extra;
+}
+
+const ExtraPart& range_and_bearing() {
+  static constexpr ExtraPart extra{kName, "epuck_range_and_bearing", [] {
+                                     return AnyPart(board(4, "ARGoS' separate e-puck plug-in: size of its packets"));
+                                   }};
   return extra;
 }
 

@@ -9,6 +9,8 @@ inline constexpr std::string_view kName = "e-puck";
 const RobotKind& kind();
 /// The camera under a mirror that some e-pucks carry on a mast.
 const ExtraPart& omnidirectional_camera();
+/// The board of ARGoS' separate plug-in, whose messages have 4 bytes.
+const ExtraPart& range_and_bearing();
 /// The look of body and wheels.
 LookPart shell();
 

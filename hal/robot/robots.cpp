@@ -13,6 +13,7 @@ void register_robots(Registrar& registrar) {
   for (const RobotKind* kind : {&epuck::kind(), &epuck2::kind(), &eyebot::kind(), &footbot::kind(), &thymio::kind()})
     registrar.add(*kind);
   registrar.add(epuck::omnidirectional_camera());
+  registrar.add(epuck::range_and_bearing());
   registrar.add(part_type<ShellPart>());
 }
 

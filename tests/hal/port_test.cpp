@@ -298,6 +298,14 @@ TEST(RangeAndBearing, DropsTheFarthestWhenFull) {
   EXPECT_EQ(port.range_m.back(), 16.0F);
 }
 
+TEST(RangeAndBearing, SendsWhatItsPortHolds) {
+  RobotKind kind;
+  EXPECT_EQ(message_bytes(kind, kRabPayloadMax), 0U);
+  kind.add(RangeAndBearingPart{.payload = 64});
+  EXPECT_EQ(message_bytes(kind, kRabPayloadMax), kRabPayloadMax);
+  EXPECT_EQ(message_bytes(kind, kLongRabPayloadMax), 64U);
+}
+
 TEST(RangeAndBearing, FusesToTheUnion) {
   RangeAndBearing real = heard({1, 4});
   const RangeAndBearing virt = heard({2, 3});

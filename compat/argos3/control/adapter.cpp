@@ -13,7 +13,8 @@ void Adapter::Params::describe(hal::ParamVisitor& v) {
   hal::describe_element(v, xml, "Handed to the controller's Init, children too.");
   hal::Problems problems;
   if (xml.empty()) xml = "<params/>";
-  if (const auto element = hal::read_xml_text(xml, "params", problems)) node = to_node(*element);
+  if (const auto element = hal::read_xml_text(xml, "params", problems))
+    node = to_node(*element, false);  // lines of the text
 }
 
 Adapter::Adapter(hal::Robot& robot, const Params& params) {

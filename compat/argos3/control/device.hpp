@@ -21,10 +21,10 @@ struct Fitting {
 
   /// A port that the configuration lists, too; null: it does not.
   template <class Port>
-  const Port* find() const {
+  Port* find() const {
     for (const hal::ListedDevice& device : list.devices()) {
       if (device.port->name == Port::kName && device.port->role == hal::port_type<Port>().role)
-        return static_cast<const Port*>(list.port(*device.port));
+        return static_cast<Port*>(list.port(*device.port));
     }
     return nullptr;
   }
@@ -38,8 +38,14 @@ class Device {
   virtual void attach(void* port, const Fitting& fitting) = 0;
   /// Before each step of the controller: takes over the port's reading.
   virtual void sense() {}
-  /// As at the start.
+  /// The controller asks for it, in the middle of a step perhaps.
+  void first_use() {
+    if (const argos::CCI_Sensor* const sensor = as_sensor(); sensor != nullptr && sensor->IsEnabled()) sense();
+  }
+  /// As at the start: once, before Init.
   virtual void begin() {}
+  /// The experiment begins again. What Init has switched on stays on.
+  virtual void reset() { begin(); }
   virtual argos::CCI_Sensor* as_sensor() noexcept { return nullptr; }
   virtual argos::CCI_Actuator* as_actuator() noexcept { return nullptr; }
 
@@ -50,6 +56,7 @@ class Device {
 template <class Cci, class Port>
 class SensorOn : public Cci, public Device {
  public:
+  using PortClass = Port;
   void attach(void* port, const Fitting& fitting) override {
     port_ = static_cast<const Port*>(port);
     fit(fitting);
@@ -68,6 +75,7 @@ class SensorOn : public Cci, public Device {
 template <class Cci, class Port>
 class ActuatorOn : public Cci, public Device {
  public:
+  using PortClass = Port;
   void attach(void* port, const Fitting& fitting) override {
     port_ = static_cast<Port*>(port);
     fit(fitting);
@@ -91,11 +99,10 @@ struct DeviceClass {
   std::unique_ptr<Device> (*make)() = nullptr;
 };
 
-template <class Made, class Port>
+template <class Made>
 DeviceClass device_class(std::string_view written) {
-  const hal::PortType& type = hal::port_type<Port>();
-  return {written, type.role, Port::kName, type.layout,
-          [] { return std::unique_ptr<Device>(std::make_unique<Made>()); }};
+  const hal::PortType& type = hal::port_type<typename Made::PortClass>();
+  return {written, type.role, type.name, type.layout, [] { return std::unique_ptr<Device>(std::make_unique<Made>()); }};
 }
 
 // By group.

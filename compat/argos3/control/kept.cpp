@@ -54,17 +54,22 @@ Kept::Kept(hal::Robot& robot, const argos::tandem_detail::SRegistration& registr
 void Kept::take(hal::Robot& robot) {
   hal::DeviceList& list = list_of(robot);
   std::size_t next = 0;
+  unclassed_.clear();
   for (const hal::ListedDevice& listed : list.devices()) {
     const DeviceClass* const found = find_class(listed);
-    if (found == nullptr) continue;
-    if (next == devices_.size()) devices_.push_back(found->make());
+    if (found == nullptr) {
+      unclassed_.push_back(listed);
+      continue;
+    }
+    const bool is_new = next == devices_.size();
+    if (is_new) devices_.push_back(found->make());
     Device& device = *devices_[next++];
     device.attach(list.port(*listed.port), {list, robot.kind(), listed.written});
-    device.begin();
+    is_new ? device.begin() : device.reset();
   }
   log_ = robot.log();
   set_run_seed(robot.run_seed());
-  set_seed(hal::seed_of(robot.run_seed(), robot.id()));
+  set_seed(hal::seed_of(robot.run_seed(), robot.id()), robot.id());
 }
 
 Kept::~Kept() {
@@ -79,7 +84,16 @@ void Kept::end() {
     controller_->Destroy();
   } catch (const std::exception& e) {
     log_.error(std::string("in Destroy(): ") + e.what());
+  } catch (...) {
+    log_.error("in Destroy(): an exception of unknown type");
   }
+}
+
+const hal::PortType* Kept::unclassed(std::string_view written, hal::Role role) const {
+  for (const hal::ListedDevice& one : unclassed_) {
+    if (one.written == written && one.port->role == role) return one.port;
+  }
+  return nullptr;
 }
 
 void Kept::step() {
@@ -113,9 +127,16 @@ namespace argos {
 namespace {
 
 template <class Map>
-auto* found(const Map& devices, const char* role, const std::string& name, const std::string& id) {
+auto* found(const Map& devices, tandem::hal::Role as, const std::string& name, const std::string& id) {
   const auto at = devices.find(name);
   if (at == devices.end()) {
+    const char* const role = as == tandem::hal::Role::Sensor ? "sensor" : "actuator";
+    const auto* const kept =
+        dynamic_cast<const tandem::compat::argos3::Kept*>(tandem::compat::argos3::current_context());
+    const auto* const port = kept == nullptr ? nullptr : kept->unclassed(name, as);
+    if (port != nullptr)
+      THROW_ARGOSEXCEPTION("robot '" << id << "': the configuration lists the " << role << " '" << name
+                                     << "', but Tandem's ARGoS layer has no class for it (port " << port->name << ")")
     std::vector<std::string> known;
     for (const auto& [listed, device] : devices) known.push_back(listed);
     THROW_ARGOSEXCEPTION("robot '" << id << "': the controller asks for the " << role << " '" << name
@@ -123,7 +144,8 @@ auto* found(const Map& devices, const char* role, const std::string& name, const
                                    << (known.empty() ? "none" : tandem::hal::listed(known))
                                    << tandem::hal::did_you_mean(name, known))
   }
-  if (auto* const device = dynamic_cast<tandem::compat::argos3::Device*>(at->second)) device->used = true;
+  auto* const device = dynamic_cast<tandem::compat::argos3::Device*>(at->second);
+  if (device != nullptr && !std::exchange(device->used, true)) device->first_use();
   return at->second;
 }
 
@@ -151,10 +173,10 @@ CCI_Controller::CCI_Controller() = default;
 CCI_Controller::~CCI_Controller() = default;
 
 CCI_Actuator* CCI_Controller::FindActuator(const std::string& name) const {
-  return found(m_mapActuators, "actuator", name, m_strId);
+  return found(m_mapActuators, tandem::hal::Role::Actuator, name, m_strId);
 }
 CCI_Sensor* CCI_Controller::FindSensor(const std::string& name) const {
-  return found(m_mapSensors, "sensor", name, m_strId);
+  return found(m_mapSensors, tandem::hal::Role::Sensor, name, m_strId);
 }
 
 CCI_Sensor::TMap& CCI_Controller::GetAllSensors() {

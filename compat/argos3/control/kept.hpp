@@ -29,12 +29,15 @@ class Kept final : public KeptController, public Context {
   void step();
   /// Gives it this robot's ports, then calls Reset.
   void reset(hal::Robot& robot);
+  /// The port of a device that the configuration lists and that no class of ARGoS' is for; null: there is no such.
+  const hal::PortType* unclassed(std::string_view written, hal::Role role) const;
 
  private:
   void tell(bool error, std::string_view text) override;
   void take(hal::Robot& robot);
 
   std::vector<std::unique_ptr<Device>> devices_;
+  std::vector<hal::ListedDevice> unclassed_;
   std::vector<std::pair<argos::CCI_Sensor*, Device*>> sensors_;
   std::unique_ptr<argos::CCI_Controller> controller_;
   hal::RobotLog log_;

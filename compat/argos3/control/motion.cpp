@@ -56,6 +56,7 @@ class WheelsOf final : public ActuatorOn<Cci, hal::WheelSpeeds> {
 template <class Cci>
 class EncodersOf final : public SensorOn<Cci, hal::WheelEncoders> {
  public:
+  EncodersOf() { this->used = true; }  // it compares with the tick before
   void begin() override { left_m_ = right_m_ = 0.0; }
   void sense() override {
     const hal::WheelEncoders& encoders = this->port();
@@ -116,12 +117,26 @@ class PlainGripper final : public ActuatorOn<argos::CCI_GripperActuator, hal::Gr
 
 class ScannerMotor final : public ActuatorOn<argos::CCI_FootBotDistanceScannerActuator, hal::ScannerDrive> {
  public:
-  void SetAngle(const CRadians& angle) override { port().go_to(angle.GetValue()); }
-  void SetRPM(Real rpm) override { port().turn(rpm * kRad_s_per_rpm); }
+  void reset() override { port() = last_; }
+  void SetAngle(const CRadians& angle) override {
+    port().go_to(angle.GetValue());
+    last_ = port();
+  }
+  void SetRPM(Real rpm) override {
+    port().turn(rpm * kRad_s_per_rpm);
+    last_ = port();
+  }
   void Enable() override {
     if (port().mode == hal::ScannerMode::Off) port().go_to(port().angle_rad);
+    last_ = port();
   }
-  void Disable() override { port().turn_off(); }
+  void Disable() override {
+    port().turn_off();
+    last_ = port();
+  }
+
+ private:
+  hal::ScannerDrive last_;
 };
 
 class ScannerDistances final : public SensorOn<argos::CCI_FootBotDistanceScannerSensor, hal::DistanceScanner> {
@@ -145,18 +160,44 @@ class ScannerDistances final : public SensorOn<argos::CCI_FootBotDistanceScanner
   }
 };
 
+/// Where the configuration lists `flight_task` and `flight_state`, commands have a robot that stands on the ground take
+/// off first. Without them a real one stays there.
+class TakeOff {
+ public:
+  void fit(const Fitting& fitting) {
+    task_ = fitting.find<hal::FlightTask>();
+    state_ = fitting.find<hal::FlightState>();
+  }
+  void order() noexcept {
+    if (task_ == nullptr || state_ == nullptr) return;
+    const bool stands = state_->phase == hal::FlightPhase::Off || state_->phase == hal::FlightPhase::Landed ||
+                        state_->phase == hal::FlightPhase::TakingOff;
+    task_->order = stands ? hal::FlightOrder::TakeOff : hal::FlightOrder::Fly;
+  }
+
+ private:
+  hal::FlightTask* task_ = nullptr;
+  const hal::FlightState* state_ = nullptr;
+};
+
 class FlightTo final : public ActuatorOn<argos::CCI_QuadRotorPositionActuator, hal::QuadrotorPosition> {
  public:
-  void SetAbsolutePosition(const CVector3& p) override { port().set(p.GetX(), p.GetY(), p.GetZ(), port().yaw_rad); }
+  void SetAbsolutePosition(const CVector3& p) override { go_to({p.GetX(), p.GetY(), p.GetZ()}); }
   void SetRelativePosition(const CVector3& p) override {
-    const auto p_WT = hal::argos::from_body(place(), {p.GetX(), p.GetY(), p.GetZ()});
-    port().set(p_WT[0], p_WT[1], p_WT[2], port().yaw_rad);
+    go_to(hal::argos::from_body(place(), {p.GetX(), p.GetY(), p.GetZ()}));
   }
   void SetAbsoluteYaw(const CRadians& yaw) override { port().yaw_rad = yaw.GetValue(); }
   void SetRelativeYaw(const CRadians& yaw) override { port().yaw_rad = hal::argos::yaw_of(place()) + yaw.GetValue(); }
 
  private:
-  void fit(const Fitting& fitting) override { place_ = fitting.find<hal::Positioning>(); }
+  void fit(const Fitting& fitting) override {
+    place_ = fitting.find<hal::Positioning>();
+    take_off_.fit(fitting);
+  }
+  void go_to(const std::array<double, 3>& p_W) {
+    port().set(p_W[0], p_W[1], p_W[2], port().yaw_rad);
+    take_off_.order();
+  }
   const hal::Positioning& place() const {
     if (place_ == nullptr)
       THROW_ARGOSEXCEPTION(
@@ -164,12 +205,20 @@ class FlightTo final : public ActuatorOn<argos::CCI_QuadRotorPositionActuator, h
     return *place_;
   }
   const hal::Positioning* place_ = nullptr;
+  TakeOff take_off_;
 };
 
 class FlightWith final : public ActuatorOn<argos::CCI_QuadRotorSpeedActuator, hal::QuadrotorSpeed> {
  public:
-  void SetLinearVelocity(const CVector3& v) override { port().set(v.GetX(), v.GetY(), v.GetZ(), port().yaw_rad_s); }
+  void SetLinearVelocity(const CVector3& v) override {
+    port().set(v.GetX(), v.GetY(), v.GetZ(), port().yaw_rad_s);
+    take_off_.order();
+  }
   void SetRotationalSpeed(const CRadians& speed) override { port().yaw_rad_s = speed.GetValue(); }
+
+ private:
+  void fit(const Fitting& fitting) override { take_off_.fit(fitting); }
+  TakeOff take_off_;
 };
 
 class HeadOf final : public ActuatorOn<argos::CCI_PanTiltCameraActuator, hal::PanTiltDrive> {
@@ -182,21 +231,20 @@ class HeadOf final : public ActuatorOn<argos::CCI_PanTiltCameraActuator, hal::Pa
 
 std::span<const DeviceClass> motion_classes() {
   using namespace argos;
-  static const std::array all = {
-      device_class<WheelsOf<CCI_DifferentialSteeringActuator>, hal::WheelSpeeds>("differential_steering"),
-      device_class<WheelsOf<CCI_EPuckWheelsActuator>, hal::WheelSpeeds>("epuck_wheels"),
-      device_class<EncodersOf<CCI_DifferentialSteeringSensor>, hal::WheelEncoders>("differential_steering"),
-      device_class<EncodersOf<CCI_FootBotEncoderSensor>, hal::WheelEncoders>("footbot_encoder"),
-      device_class<EncodersOf<CCI_EPuckEncoderSensor>, hal::WheelEncoders>("epuck_encoder"),
-      device_class<TurretOf, hal::TurretDrive>("footbot_turret"),
-      device_class<TurretAngle, hal::TurretEncoder>("footbot_turret_encoder"),
-      device_class<FootbotGripper, hal::GripperDrive>("footbot_gripper"),
-      device_class<PlainGripper, hal::GripperDrive>("gripper"),
-      device_class<ScannerMotor, hal::ScannerDrive>("footbot_distance_scanner"),
-      device_class<ScannerDistances, hal::DistanceScanner>("footbot_distance_scanner"),
-      device_class<FlightTo, hal::QuadrotorPosition>("quadrotor_position"),
-      device_class<FlightWith, hal::QuadrotorSpeed>("quadrotor_speed"),
-      device_class<HeadOf, hal::PanTiltDrive>("pan_tilt_camera")};
+  static const std::array all = {device_class<WheelsOf<CCI_DifferentialSteeringActuator>>("differential_steering"),
+                                 device_class<WheelsOf<CCI_EPuckWheelsActuator>>("epuck_wheels"),
+                                 device_class<EncodersOf<CCI_DifferentialSteeringSensor>>("differential_steering"),
+                                 device_class<EncodersOf<CCI_FootBotEncoderSensor>>("footbot_encoder"),
+                                 device_class<EncodersOf<CCI_EPuckEncoderSensor>>("epuck_encoder"),
+                                 device_class<TurretOf>("footbot_turret"),
+                                 device_class<TurretAngle>("footbot_turret_encoder"),
+                                 device_class<FootbotGripper>("footbot_gripper"),
+                                 device_class<PlainGripper>("gripper"),
+                                 device_class<ScannerMotor>("footbot_distance_scanner"),
+                                 device_class<ScannerDistances>("footbot_distance_scanner"),
+                                 device_class<FlightTo>("quadrotor_position"),
+                                 device_class<FlightWith>("quadrotor_speed"),
+                                 device_class<HeadOf>("pan_tilt_camera")};
   return all;
 }
 

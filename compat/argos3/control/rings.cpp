@@ -142,22 +142,21 @@ std::span<const DeviceClass> ring_classes() {
   using namespace argos;
   using BaseGround = GroundOf<CCI_FootBotBaseGroundSensor, hal::BaseGround, hal::BaseGroundPart>;
   using MotorGround = GroundOf<CCI_FootBotMotorGroundSensor, hal::MotorGround, hal::MotorGroundPart>;
-  static const std::array all = {
-      device_class<ProximityOf<CCI_ProximitySensor>, hal::Proximity>("proximity"),
-      device_class<ProximityOf<CCI_FootBotProximitySensor>, hal::Proximity>("footbot_proximity"),
-      device_class<ProximityOf<CCI_EPuckProximitySensor>, hal::Proximity>("epuck_proximity"),
-      device_class<ProximityOf<CCI_EyeBotProximitySensor>, hal::Proximity>("eyebot_proximity"),
-      device_class<LightOf<CCI_LightSensor>, hal::Light>("light"),
-      device_class<LightOf<CCI_FootBotLightSensor>, hal::Light>("footbot_light"),
-      device_class<LightOf<CCI_EPuckLightSensor>, hal::Light>("epuck_light"),
-      device_class<LightOf<CCI_EyeBotLightSensor>, hal::Light>("eyebot_light"),
-      device_class<PlainGround, hal::Ground>("ground"),
-      device_class<EpuckGround, hal::Ground>("epuck_ground"),
-      device_class<BaseGround, hal::BaseGround>("footbot_base_ground"),
-      device_class<MotorGround, hal::MotorGround>("footbot_motor_ground"),
-      device_class<PositioningOf, hal::Positioning>("positioning"),
-      device_class<BatteryOf, hal::Battery>("battery"),
-      device_class<EpuckBattery, hal::Battery>("epuck_battery")};
+  static const std::array all = {device_class<ProximityOf<CCI_ProximitySensor>>("proximity"),
+                                 device_class<ProximityOf<CCI_FootBotProximitySensor>>("footbot_proximity"),
+                                 device_class<ProximityOf<CCI_EPuckProximitySensor>>("epuck_proximity"),
+                                 device_class<ProximityOf<CCI_EyeBotProximitySensor>>("eyebot_proximity"),
+                                 device_class<LightOf<CCI_LightSensor>>("light"),
+                                 device_class<LightOf<CCI_FootBotLightSensor>>("footbot_light"),
+                                 device_class<LightOf<CCI_EPuckLightSensor>>("epuck_light"),
+                                 device_class<LightOf<CCI_EyeBotLightSensor>>("eyebot_light"),
+                                 device_class<PlainGround>("ground"),
+                                 device_class<EpuckGround>("epuck_ground"),
+                                 device_class<BaseGround>("footbot_base_ground"),
+                                 device_class<MotorGround>("footbot_motor_ground"),
+                                 device_class<PositioningOf>("positioning"),
+                                 device_class<BatteryOf>("battery"),
+                                 device_class<EpuckBattery>("epuck_battery")};
   return all;
 }
 

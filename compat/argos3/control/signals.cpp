@@ -33,64 +33,69 @@ using hal::argos::kM_per_cm;
 
 // --- messages ---
 
-std::size_t payload_of(const Fitting& fitting) {
-  const auto* const board = fitting.kind.part<hal::RangeAndBearingPart>();
-  return board == nullptr ? 0 : static_cast<std::size_t>(board->payload);
-}
-
 /// Sends in every tick.
-class Sender final : public ActuatorOn<argos::CCI_RangeAndBearingActuator, hal::RangeAndBearingSend> {
+template <class Port>
+class Sender final : public ActuatorOn<argos::CCI_RangeAndBearingActuator, Port> {
  public:
-  void begin() override {
-    m_cData.Zero();
-    port().sending = true;
-    port().size = static_cast<UInt8>(m_cData.Size());
-    send();
-  }
+  void begin() override { ClearData(); }
   void SetData(const CByteArray& data) override {
-    if (data.Size() != m_cData.Size())
-      THROW_ARGOSEXCEPTION("a message of this robot has " << m_cData.Size() << " bytes (rab_data_size), not "
+    if (data.Size() != bytes().Size())
+      THROW_ARGOSEXCEPTION("a message of this robot has " << bytes().Size() << " bytes (rab_data_size), not "
                                                           << data.Size())
-    m_cData = data;
+    bytes() = data;
     send();
   }
   void SetData(size_t i, UInt8 value) override {
-    m_cData[i] = value;
-    port().payload[i] = value;
+    bytes()[i] = value;
+    send();
   }
   void ClearData() override {
-    m_cData.Zero();
+    bytes().Zero();
     send();
   }
 
  private:
-  void fit(const Fitting& fitting) override { m_cData.Resize(payload_of(fitting)); }
-  void send() { std::copy_n(m_cData.ToCArray(), m_cData.Size(), port().payload.begin()); }
+  CByteArray& bytes() noexcept { return this->m_cData; }
+  void fit(const Fitting& fitting) override {
+    bytes().Resize(hal::message_bytes(fitting.kind, this->port().payload.size()));
+  }
+  /// All of it: loop functions may have changed the message.
+  void send() {
+    Port& port = this->port();
+    port.sending = true;
+    port.size = static_cast<UInt8>(bytes().Size());
+    std::copy_n(bytes().ToCArray(), bytes().Size(), port.payload.begin());
+  }
 };
 
-class Receiver final : public SensorOn<argos::CCI_RangeAndBearingSensor, hal::RangeAndBearing> {
+template <class Port>
+class Receiver final : public SensorOn<argos::CCI_RangeAndBearingSensor, Port> {
  public:
+  using typename argos::CCI_RangeAndBearingSensor::SPacket;
+  using typename argos::CCI_RangeAndBearingSensor::TReadings;
+
   void sense() override {
-    const hal::RangeAndBearing& heard = port();
+    const Port& heard = this->port();
+    TReadings& readings = this->m_tReadings;
     // Packets that are not needed now are kept, with their memory.
-    while (m_tReadings.size() > heard.count) {
-      spare_.push_back(std::move(m_tReadings.back()));
-      m_tReadings.pop_back();
+    while (readings.size() > heard.count) {
+      spare_.push_back(std::move(readings.back()));
+      readings.pop_back();
     }
-    while (m_tReadings.size() < heard.count) {
+    while (readings.size() < heard.count) {
       if (spare_.empty()) {
-        m_tReadings.emplace_back();
+        readings.emplace_back();
       } else {
-        m_tReadings.push_back(std::move(spare_.back()));
+        readings.push_back(std::move(spare_.back()));
         spare_.pop_back();
       }
     }
     for (std::size_t i = 0; i < heard.count; ++i) {
-      SPacket& packet = m_tReadings[i];
+      SPacket& packet = readings[i];
       packet.Range = static_cast<double>(heard.range_m[i]) / kM_per_cm;
       packet.HorizontalBearing.SetValue(static_cast<double>(heard.bearing_rad[i]));
       packet.VerticalBearing.SetValue(static_cast<double>(heard.elevation_rad[i]));
-      packet.Data.Resize(std::min<std::size_t>(heard.size[i], hal::kRabPayloadMax));
+      packet.Data.Resize(std::min<std::size_t>(heard.size[i], Port::kPayload));
       std::copy_n(heard.message(i), packet.Data.Size(), packet.Data.ToCArray());
     }
   }
@@ -100,42 +105,53 @@ class Receiver final : public SensorOn<argos::CCI_RangeAndBearingSensor, hal::Ra
 };
 
 /// Sends what it was told last, until it is disabled.
-class EpuckSender final : public ActuatorOn<argos::CCI_EPuckRangeAndBearingActuator, hal::RangeAndBearingSend> {
+template <class Port>
+class EpuckSender final : public ActuatorOn<argos::CCI_EPuckRangeAndBearingActuator, Port> {
  public:
+  using typename argos::CCI_EPuckRangeAndBearingActuator::TData;
+
   void begin() override { Disable(); }
   void SetData(const TData data) override {
-    port().sending = true;
-    port().size = static_cast<UInt8>(size_);
-    std::copy_n(data, size_, port().payload.begin());
+    Port& port = this->port();
+    port.sending = true;
+    port.size = static_cast<UInt8>(size_);
+    std::copy_n(data, size_, port.payload.begin());
   }
   void SetDataForEmitter(size_t, const TData) override {
     THROW_ARGOSEXCEPTION("this robot's board sends the same to all sides: use SetData instead of SetDataForEmitter")
   }
-  void Disable() override { port() = {}; }
+  void Disable() override { this->port() = {}; }
   void DisableEmitter(size_t) override {
     THROW_ARGOSEXCEPTION("this robot's board sends the same to all sides: use Disable instead of DisableEmitter")
   }
 
  private:
-  void fit(const Fitting& fitting) override { size_ = std::min<std::size_t>(payload_of(fitting), MAX_BYTES_SENT); }
+  void fit(const Fitting& fitting) override {
+    size_ = std::min<std::size_t>(hal::message_bytes(fitting.kind, this->port().payload.size()), this->MAX_BYTES_SENT);
+  }
   std::size_t size_ = 0;
 };
 
 /// Keeps packets until they are cleared.
-class EpuckReceiver final : public SensorOn<argos::CCI_EPuckRangeAndBearingSensor, hal::RangeAndBearing> {
+template <class Port>
+class EpuckReceiver final : public SensorOn<argos::CCI_EPuckRangeAndBearingSensor, Port> {
  public:
+  using typename argos::CCI_EPuckRangeAndBearingSensor::SReceivedPacket;
+
   void begin() override { ClearPackets(); }
-  void ClearPackets() override { m_tPackets.clear(); }
+  void ClearPackets() override { this->m_tPackets.clear(); }
   void sense() override {
-    const hal::RangeAndBearing& heard = port();
-    for (std::size_t i = 0; i < heard.count && m_tPackets.size() < kMost; ++i) {
-      if (m_tPackets.size() == packets_.size()) packets_.push_back(std::make_unique<SReceivedPacket>());
-      SReceivedPacket& packet = *packets_[m_tPackets.size()];
+    constexpr std::size_t kBytes = argos::CCI_EPuckRangeAndBearingSensor::MAX_BYTES_RECEIVED;
+    const Port& heard = this->port();
+    auto& packets = this->m_tPackets;
+    for (std::size_t i = 0; i < heard.count && packets.size() < kMost; ++i) {
+      if (packets.size() == packets_.size()) packets_.push_back(std::make_unique<SReceivedPacket>());
+      SReceivedPacket& packet = *packets_[packets.size()];
       packet.Range = static_cast<double>(heard.range_m[i]) / kM_per_cm;
       packet.Bearing.SetValue(static_cast<double>(heard.bearing_rad[i]));
-      std::fill_n(packet.Data, MAX_BYTES_RECEIVED, UInt8{0});
-      std::copy_n(heard.message(i), std::min<std::size_t>(heard.size[i], MAX_BYTES_RECEIVED), packet.Data);
-      m_tPackets.push_back(&packet);
+      std::fill_n(packet.Data, kBytes, UInt8{0});
+      std::copy_n(heard.message(i), std::min<std::size_t>(heard.size[i], kBytes), packet.Data);
+      packets.push_back(&packet);
     }
   }
 
@@ -268,8 +284,9 @@ class CameraOf final : public SensorOn<Cci, Port> {
 
   void begin() override {
     this->m_bEnabled = kOn;
-    this->m_sReadings = {};
+    reset();
   }
+  void reset() override { this->m_sReadings = {}; }
   void Disable() override {
     Cci::Disable();
     this->m_sReadings.BlobList.clear();
@@ -306,20 +323,29 @@ std::span<const DeviceClass> signal_classes() {
   using namespace argos;
   using Leds = LedsOf<hal::RingLeds, hal::LedsPart>;
   using UpperLeds = LedsOf<hal::UpperRingLeds, hal::UpperLedsPart>;
-  using Omni = CameraOf<CCI_ColoredBlobOmnidirectionalCameraSensor, hal::OmnidirectionalCamera>;
-  using EpuckOmni = CameraOf<CCI_EPuckOmnidirectionalCameraSensor, hal::OmnidirectionalCamera, true>;
-  using Perspective = CameraOf<CCI_ColoredBlobPerspectiveCameraSensor, hal::PerspectiveCamera>;
-  static const std::array all = {device_class<Sender, hal::RangeAndBearingSend>("range_and_bearing"),
-                                 device_class<Receiver, hal::RangeAndBearing>("range_and_bearing"),
-                                 device_class<EpuckSender, hal::RangeAndBearingSend>("epuck_range_and_bearing"),
-                                 device_class<EpuckReceiver, hal::RangeAndBearing>("epuck_range_and_bearing"),
-                                 device_class<Leds, hal::RingLeds>("leds"),
-                                 device_class<UpperLeds, hal::UpperRingLeds>("upper_leds"),
-                                 device_class<EpuckRgb, hal::RingLeds>("epuck_rgb_leds"),
-                                 device_class<EpuckRing, hal::RingLeds>("epuck_base_leds"),
-                                 device_class<Omni, hal::OmnidirectionalCamera>("colored_blob_omnidirectional_camera"),
-                                 device_class<EpuckOmni, hal::OmnidirectionalCamera>("epuck_omnidirectional_camera"),
-                                 device_class<Perspective, hal::PerspectiveCamera>("colored_blob_perspective_camera")};
+  using OmniCci = CCI_ColoredBlobOmnidirectionalCameraSensor;
+  using EpuckOmniCci = CCI_EPuckOmnidirectionalCameraSensor;
+  using PerspectiveCci = CCI_ColoredBlobPerspectiveCameraSensor;
+  // Robots of ARGoS files have the ports with more room, unless they are real.
+  static const std::array all = {
+      device_class<Sender<hal::RangeAndBearingSend>>("range_and_bearing"),
+      device_class<Sender<hal::RangeAndBearingLongSend>>("range_and_bearing"),
+      device_class<Receiver<hal::RangeAndBearing>>("range_and_bearing"),
+      device_class<Receiver<hal::RangeAndBearingMany>>("range_and_bearing"),
+      device_class<EpuckSender<hal::RangeAndBearingSend>>("epuck_range_and_bearing"),
+      device_class<EpuckSender<hal::RangeAndBearingLongSend>>("epuck_range_and_bearing"),
+      device_class<EpuckReceiver<hal::RangeAndBearing>>("epuck_range_and_bearing"),
+      device_class<EpuckReceiver<hal::RangeAndBearingMany>>("epuck_range_and_bearing"),
+      device_class<Leds>("leds"),
+      device_class<UpperLeds>("upper_leds"),
+      device_class<EpuckRgb>("epuck_rgb_leds"),
+      device_class<EpuckRing>("epuck_base_leds"),
+      device_class<CameraOf<OmniCci, hal::OmnidirectionalCamera>>("colored_blob_omnidirectional_camera"),
+      device_class<CameraOf<OmniCci, hal::OmnidirectionalCameraMany>>("colored_blob_omnidirectional_camera"),
+      device_class<CameraOf<EpuckOmniCci, hal::OmnidirectionalCamera, true>>("epuck_omnidirectional_camera"),
+      device_class<CameraOf<EpuckOmniCci, hal::OmnidirectionalCameraMany, true>>("epuck_omnidirectional_camera"),
+      device_class<CameraOf<PerspectiveCci, hal::PerspectiveCamera>>("colored_blob_perspective_camera"),
+      device_class<CameraOf<PerspectiveCci, hal::PerspectiveCameraMany>>("colored_blob_perspective_camera")};
   return all;
 }
 

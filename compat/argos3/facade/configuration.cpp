@@ -14,7 +14,7 @@ struct detail::Data {
   std::vector<std::unique_ptr<Attribute>> attributes;
   std::vector<std::unique_ptr<Element>> children;
   Data* parent = nullptr;
-  Node* node = nullptr;  // in its parent's list; null when it has none
+  Node* node = nullptr;  // in its parent's list, or a root's first; null when that is gone and copies live on
 
   Data() = default;
   Data(const Data&) = delete;
@@ -23,6 +23,9 @@ struct detail::Data {
     for (const auto& child : children) of(*child).parent = nullptr;
   }
   static Data& of(const Node& node) { return *node.data_; }
+  static void leave(const Node& node) {
+    if (node.data_->node == &node) node.data_->node = nullptr;
+  }
 
   Element& add(std::unique_ptr<Element> child) {
     Data& data = of(*child);
@@ -120,10 +123,17 @@ const char* Exception::what() const noexcept {
 
 Node::Node(const std::string& name) : data_(std::make_shared<Data>()) {
   data_->name = name;
+  data_->node = this;
 }
 Node::Node(const Node&) = default;
-Node& Node::operator=(const Node&) = default;
-Node::~Node() = default;
+Node& Node::operator=(const Node& other) {
+  Data::leave(*this);
+  data_ = other.data_;
+  return *this;
+}
+Node::~Node() {
+  Data::leave(*this);
+}
 
 std::string Node::Value() const {
   return data_->name;
@@ -303,9 +313,9 @@ void Document::SaveFile(const std::string& file) const {
 
 namespace tandem::compat::argos3 {
 
-std::unique_ptr<ticpp::Element> to_node(const hal::Element& element) {
+std::unique_ptr<ticpp::Element> to_node(const hal::Element& element, bool lines) {
   auto node = std::make_unique<ticpp::Element>(element.name);
-  ticpp::detail::Data::of(*node).fill(element, false);
+  ticpp::detail::Data::of(*node).fill(element, lines);
   return node;
 }
 

@@ -7,7 +7,7 @@
 
 namespace tandem::compat::argos3 {
 
-/// A node with the same attributes and children.
-std::unique_ptr<ticpp::Element> to_node(const hal::Element& element);
+/// A node with the same attributes and children. `lines`: those of the element are lines of a file.
+std::unique_ptr<ticpp::Element> to_node(const hal::Element& element, bool lines);
 
 }  // namespace tandem::compat::argos3

@@ -15,14 +15,20 @@ class Context {
   /// A line, or several, of LOG or LOGERR.
   virtual void tell(bool error, std::string_view text) = 0;
 
-  /// Seeds generators that are made from now on, and begins those again that were made.
-  void set_seed(std::uint64_t seed);
-  /// Makes a generator of the category's seed and of this seed.
-  argos::CRandom::CRNG* make_generator(std::uint64_t category_seed);
+  /// Seeds generators that are made from now on, and begins those again that were made. `name`: of a robot.
+  void set_seed(std::uint64_t seed, std::string_view name = {});
+  /// Begins a generator that is made in this context: with the seed of this context in the category "argos", else with
+  /// the category's, and the robot's name.
+  void take(argos::CRandom::CRNG& generator, const argos::CRandom::CCategory& category);
 
  private:
   std::uint64_t seed_ = 0;
-  std::vector<std::pair<argos::CRandom::CRNG*, std::uint64_t>> generators_;  // and their categories' seeds
+  std::string name_;
+  struct Taken {
+    argos::CRandom::CRNG* generator;
+    bool of_run;  // its seed is the context's
+  };
+  std::vector<Taken> taken_;
 };
 
 /// Of this thread; null when no code of ARGoS runs on it.

@@ -1,5 +1,4 @@
 // Constants and longer functions of the facade's geometry.
-#include <algorithm>
 #include <argos3/core/utility/math/plane.h>
 #include <argos3/core/utility/math/quaternion.h>
 #include <argos3/core/utility/math/ray3.h>
@@ -38,7 +37,7 @@ CQuaternion& CQuaternion::FromEulerAngles(const CRadians& z, const CRadians& y, 
 
 void CQuaternion::ToEulerAngles(CRadians& z, CRadians& y, CRadians& x) const {
   const Real sine = 2.0 * (m_fW * m_fY - m_fX * m_fZ);
-  y = ASin(std::clamp(sine, -1.0, 1.0));
+  y = ASin(sine);
   if (std::fabs(sine) < 1.0 - 1e-12) {
     z = ATan2(2.0 * (m_fW * m_fZ + m_fX * m_fY), 1.0 - 2.0 * (m_fY * m_fY + m_fZ * m_fZ));
     x = ATan2(2.0 * (m_fW * m_fX + m_fY * m_fZ), 1.0 - 2.0 * (m_fX * m_fX + m_fY * m_fY));
@@ -74,7 +73,7 @@ void CRotationMatrix3::SetFromAngles(const CRadians& x, const CRadians& y, const
 
 CRotationMatrix3::operator CQuaternion() const {
   const CRotationMatrix3& m = *this;
-  CRadians z = ATan2(m(3), m(0)), y = ASin(std::clamp(-m(6), -1.0, 1.0)), x = ATan2(m(7), m(8));
+  CRadians z = ATan2(m(3), m(0)), y = ASin(-m(6)), x = ATan2(m(7), m(8));
   if (std::fabs(m(6)) >= 1.0 - 1e-12) {
     z = ATan2(-m(1), m(4));
     x = CRadians();

@@ -16,6 +16,7 @@ struct CRandom::CRNG::SGenerator {
   std::uint64_t key;
   std::uint32_t stream;
   tandem::hal::Random random;
+  std::string owner = {};  ///< the robot, or empty
   SGenerator(std::uint64_t k, std::uint32_t s) : key(k), stream(s), random(k, s) {}
 };
 
@@ -24,9 +25,22 @@ struct TandemRandom {
   /// What a key is shown as, and is made of.
   static UInt32 shown(std::uint64_t key) { return static_cast<UInt32>(key ^ key >> 32); }
   static void begin(CRandom::CRNG& rng, std::uint64_t key, std::uint32_t stream) {
-    *rng.m_psGenerator = CRandom::CRNG::SGenerator(key, stream);
+    CRandom::CRNG::SGenerator& generator = *rng.m_psGenerator;
+    generator.key = key;
+    generator.stream = stream;
+    generator.random = tandem::hal::Random(key, stream);
     rng.m_unSeed = shown(key);
   }
+  /// With a category's seed; a robot's follows from its name, too.
+  static void begin_of(CRandom::CRNG& rng, std::uint64_t category_seed) {
+    const std::string& owner = rng.m_psGenerator->owner;
+    begin(rng, owner.empty() ? category_seed : tandem::hal::seed_of(category_seed, owner), rng.m_psGenerator->stream);
+  }
+  static void own(CRandom::CRNG& rng, std::string_view owner, std::size_t stream) {
+    rng.m_psGenerator->owner = owner;
+    rng.m_psGenerator->stream = static_cast<std::uint32_t>(stream);
+  }
+  static std::uint32_t stream_of(const CRandom::CRNG& rng) { return rng.m_psGenerator->stream; }
 };
 
 }  // namespace argos
@@ -41,6 +55,7 @@ struct Registry {
   std::mutex mutex;
   std::deque<CRandom::CRNG> generators;
   std::map<std::string, std::unique_ptr<CRandom::CCategory>> categories;
+  argos::UInt32 run_seed = 0;  // as it is shown
 
   Registry() { categories["argos"] = std::make_unique<CRandom::CCategory>("argos", 0); }
   CRandom::CRNG& add() {
@@ -53,29 +68,33 @@ Registry& registry() {
   return *all;
 }
 
-std::uint64_t key_of(std::uint64_t seed, std::uint64_t category_seed) {
-  return category_seed == 0 ? seed : hal::seed_of(seed, std::to_string(category_seed));
-}
-
 }  // namespace
 
-void Context::set_seed(std::uint64_t seed) {
+void Context::set_seed(std::uint64_t seed, std::string_view name) {
   seed_ = seed;
-  std::uint32_t stream = 0;
-  for (auto& [rng, category_seed] : generators_)
-    argos::TandemRandom::begin(*rng, key_of(seed_, category_seed), stream++);
+  name_ = name;
+  for (const Taken& one : taken_) {
+    if (one.of_run)
+      argos::TandemRandom::begin(*one.generator, seed_, argos::TandemRandom::stream_of(*one.generator));
+    else
+      one.generator->Reset();
+  }
 }
 
-CRandom::CRNG* Context::make_generator(std::uint64_t category_seed) {
-  CRandom::CRNG& rng = registry().add();
-  argos::TandemRandom::begin(rng, key_of(seed_, category_seed), static_cast<std::uint32_t>(generators_.size()));
-  generators_.emplace_back(&rng, category_seed);
-  return &rng;
+void Context::take(CRandom::CRNG& generator, const CRandom::CCategory& category) {
+  const bool of_run = category.GetId() == "argos";
+  argos::TandemRandom::own(generator, name_, taken_.size());
+  if (of_run)
+    argos::TandemRandom::begin(generator, seed_, argos::TandemRandom::stream_of(generator));
+  else
+    argos::TandemRandom::begin_of(generator, category.GetSeed());
+  taken_.push_back({&generator, of_run});
 }
 
 void set_run_seed(std::uint64_t seed) {
   const std::lock_guard lock(registry().mutex);
-  registry().categories.at("argos")->SetSeed(argos::TandemRandom::shown(seed));
+  registry().run_seed = argos::TandemRandom::shown(seed);
+  registry().categories.at("argos")->SetSeed(registry().run_seed);
 }
 
 }  // namespace tandem::compat::argos3
@@ -105,7 +124,7 @@ void CRandom::CRNG::SetSeed(UInt32 seed) noexcept {
 }
 
 void CRandom::CRNG::Reset() {
-  *m_psGenerator = SGenerator(m_psGenerator->key, m_psGenerator->stream);
+  m_psGenerator->random = tandem::hal::Random(m_psGenerator->key, m_psGenerator->stream);
 }
 
 bool CRandom::CRNG::Bernoulli(Real probability) {
@@ -153,11 +172,12 @@ CRandom::CCategory::CCategory(const std::string& id, UInt32 seed) : m_strId(id),
 CRandom::CCategory::~CCategory() {}
 
 CRandom::CRNG* CRandom::CCategory::CreateRNG() {
-  // The numbers of a robot follow from its own seed, and from the category's where that is not the run's.
-  if (compat::Context* const context = compat::current_context(); context != nullptr)
-    return context->make_generator(m_strId == "argos" ? 0 : std::uint64_t{1} + m_unSeed);
   CRNG& rng = compat::registry().add();
-  TandemRandom::begin(rng, m_unSeed, static_cast<std::uint32_t>(m_vecRNGList.size()));
+  if (compat::Context* const context = compat::current_context(); context != nullptr)
+    context->take(rng, *this);
+  else
+    TandemRandom::begin(rng, m_unSeed, static_cast<std::uint32_t>(m_vecRNGList.size()));
+  const std::lock_guard lock(compat::registry().mutex);
   m_vecRNGList.push_back(&rng);
   return &rng;
 }
@@ -167,8 +187,9 @@ void CRandom::CCategory::ResetRNGs() {
 }
 
 void CRandom::CCategory::ReseedRNGs() {
-  std::uint32_t stream = 0;
-  for (CRNG* const rng : m_vecRNGList) TandemRandom::begin(*rng, m_unSeed, stream++);
+  // With the run's seed each has a key of its context's.
+  if (m_strId == "argos" && m_unSeed == compat::registry().run_seed) return ResetRNGs();
+  for (CRNG* const rng : m_vecRNGList) TandemRandom::begin_of(*rng, m_unSeed);
 }
 
 bool CRandom::CreateCategory(const std::string& category, UInt32 seed) {

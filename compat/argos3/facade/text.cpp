@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 
 #include "hal/named_colors.hpp"
 
@@ -185,14 +186,19 @@ CByteArray& CByteArray::FetchBuffer(UInt8* bytes, size_t size) {
   return *this;
 }
 
-CByteArray* CByteArray::operator()(size_t start, ssize_t end) {
+CByteArray* CByteArray::operator()(size_t start, ssize_t end) const {
   const size_t last = end < 0 ? Size() : static_cast<size_t>(end);
   if (start > last || last > Size())
     THROW_ARGOSEXCEPTION("a CByteArray of " << Size() << " bytes has no bytes " << start << " to " << last)
   return new CByteArray(m_vecBuffer.data() + start, last - start);
 }
 
+namespace {
+constexpr SInt32 kNotFinite = std::numeric_limits<SInt32>::max();  // exponent: the mantissa is the sign; 0: no number
+}  // namespace
+
 CByteArray& CByteArray::operator<<(double value) {
+  if (!std::isfinite(value)) return *this << SInt64{std::isnan(value) ? 0 : value > 0.0 ? 1 : -1} << kNotFinite;
   SInt32 exponent = 0;
   const auto mantissa = static_cast<SInt64>(std::ldexp(std::frexp(value, &exponent), 62));
   return *this << mantissa << exponent;
@@ -202,7 +208,9 @@ CByteArray& CByteArray::operator>>(double& value) {
   SInt64 mantissa = 0;
   SInt32 exponent = 0;
   *this >> mantissa >> exponent;
-  value = std::ldexp(static_cast<double>(mantissa), exponent - 62);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  value = exponent != kNotFinite ? std::ldexp(static_cast<double>(mantissa), exponent - 62)
+                                 : static_cast<double>(mantissa) * kInfinity;  // 0 * infinity is no number
   return *this;
 }
 

@@ -4,17 +4,17 @@
 #include <argos3/core/simulator/entity/embodied_entity.h>
 #include <argos3/core/simulator/space/space.h>
 #include <cmath>
+#include <mutex>
 
 #include "compat/argos3/simulator/session.hpp"
 
 namespace argos {
 
-using tandem::compat::argos3::Body;
 using tandem::compat::argos3::Form;
+using tandem::compat::argos3::in_world;
 using tandem::compat::argos3::Place;
 using tandem::compat::argos3::place_of;
 using tandem::compat::argos3::refuse;
-using tandem::compat::argos3::Session;
 using tandem::compat::argos3::world;
 
 CEmbodiedEntity::CEmbodiedEntity(CComposableEntity* pc_parent) : CEmbodiedEntity(pc_parent, "body_0") {}
@@ -28,15 +28,12 @@ CEmbodiedEntity::CEmbodiedEntity(CComposableEntity* pc_parent, const std::string
   m_mapAnchors.emplace("origin", m_psOriginAnchor);
 }
 CEmbodiedEntity::~CEmbodiedEntity() {
-  if (m_bFollowed) CSpaceAccess::Follow(*this, false);
   for (const auto& entry : m_mapAnchors) delete entry.second;
 }
 
 namespace {
 
-bool in_world(const CEmbodiedEntity& body) {
-  return body.GetBody().Kind != Body::NONE && Session::get().entered() && world().there(body.GetBody());
-}
+std::mutex bounding;  // controllers may ask, on any thread
 
 std::string owner_of(const CEmbodiedEntity& body) {
   return body.GetRootEntity().GetId();
@@ -45,12 +42,12 @@ std::string owner_of(const CEmbodiedEntity& body) {
 }  // namespace
 
 bool CEmbodiedEntity::IsMovable() const {
-  return in_world(*this) ? world().form(m_sBody).movable : m_bMovable;
+  return in_world(m_sBody) ? world().form(m_sBody).movable : m_bMovable;
 }
 void CEmbodiedEntity::SetMovable(bool b_movable) {
   if (m_sBody.Kind == SBody::ROBOT) refuse(owner_of(*this), "a robot is movable; Disable() makes it stand");
   m_bMovable = b_movable;
-  if (!in_world(*this)) return;
+  if (!in_world(m_sBody)) return;
   Form form = world().form(m_sBody);
   form.movable = b_movable;
   const std::string why = world().change(m_sBody, form);
@@ -63,7 +60,6 @@ SAnchor& CEmbodiedEntity::AddAnchor(const std::string& str_id, const CVector3& c
   auto* const anchor =
       new SAnchor(*this, str_id, static_cast<UInt32>(m_mapAnchors.size()), c_offset_position, c_offset_orientation);
   m_mapAnchors.emplace(str_id, anchor);
-  Follow();
   ReadWorld();
   return *anchor;
 }
@@ -78,7 +74,6 @@ bool CEmbodiedEntity::IsAnchorEnabled(const std::string& str_id) {
   return str_id == "origin" || GetAnchor(str_id).InUseCount > 0;
 }
 SAnchor& CEmbodiedEntity::GetAnchor(const std::string& str_id) {
-  Follow();
   const auto found = m_mapAnchors.find(str_id);
   if (found != m_mapAnchors.end()) return *found->second;
   std::string there;
@@ -88,25 +83,15 @@ SAnchor& CEmbodiedEntity::GetAnchor(const std::string& str_id) {
 const SAnchor& CEmbodiedEntity::GetAnchor(const std::string& str_id) const {
   return const_cast<CEmbodiedEntity*>(this)->GetAnchor(str_id);
 }
-std::map<std::string, SAnchor*>& CEmbodiedEntity::GetAnchors() {
-  Follow();
-  return m_mapAnchors;
-}
 
 void CEmbodiedEntity::SetBody(const SBody& s_body) {
   m_sBody = s_body;
   ReadWorld();
 }
 
-void CEmbodiedEntity::StartFollowing() const {
-  m_bFollowed = true;
-  CSpaceAccess::Follow(*this, true);
-  ReadWorld();
-}
-
 void CEmbodiedEntity::ReadWorld() const {
   SAnchor& origin = *m_psOriginAnchor;
-  if (in_world(*this)) {
+  if (in_world(m_sBody)) {
     const Place place = world().place(m_sBody);
     origin.Position = tandem::compat::argos3::vector_of(place);
     origin.Orientation = tandem::compat::argos3::quaternion_of(place);
@@ -118,16 +103,19 @@ void CEmbodiedEntity::ReadWorld() const {
     CVector3 offset = anchor.OffsetPosition;
     anchor.Position = origin.Position + offset.Rotate(origin.Orientation);
     anchor.Orientation = origin.Orientation * anchor.OffsetOrientation;
+    if (anchor.Id == "turret" && in_world(m_sBody))
+      anchor.Orientation *= CQuaternion(CRadians(world().turret_rad(m_sBody)), CVector3::Z);
   }
 }
 
 const SBoundingBox& CEmbodiedEntity::GetBoundingBox() const {
+  const std::lock_guard lock(bounding);
   const_cast<CEmbodiedEntity*>(this)->CalculateBoundingBox();
   return m_sBoundingBox;
 }
 void CEmbodiedEntity::CalculateBoundingBox() {
   const CVector3& p = GetOriginAnchor().Position;
-  const Form form = in_world(*this) ? world().form(m_sBody) : Form();
+  const Form form = in_world(m_sBody) ? world().form(m_sBody) : Form();
   double x_m = form.radius_m, y_m = form.radius_m;
   if (form.box) {
     CRadians z, y, x;
@@ -143,7 +131,7 @@ void CEmbodiedEntity::CalculateBoundingBox() {
 bool CEmbodiedEntity::MoveTo(const CVector3& c_position, const CQuaternion& c_orientation, bool b_check_only,
                              bool b_ignore_collisions) {
   const Place place = place_of(c_position, c_orientation);
-  if (!in_world(*this)) {
+  if (!in_world(m_sBody)) {
     if (b_check_only) return true;
     m_psOriginAnchor->Position = m_cInitPosition = c_position;
     m_psOriginAnchor->Orientation = m_cInitOrientation = c_orientation;
@@ -158,7 +146,7 @@ bool CEmbodiedEntity::MoveTo(const CVector3& c_position, const CQuaternion& c_or
 }
 
 bool CEmbodiedEntity::IsCollidingWithSomething() const {
-  return in_world(*this) && !world().room(m_sBody, world().place(m_sBody)).empty();
+  return in_world(m_sBody) && !world().room(m_sBody, world().place(m_sBody)).empty();
 }
 std::string CEmbodiedEntity::GetTypeDescription() const {
   return "body";
@@ -220,7 +208,7 @@ TEmbodiedEntityIntersectionData hits(const CRay3& ray, const CEmbodiedEntity* wi
     auto* const composed = dynamic_cast<CComposableEntity*>(entity);
     if (composed == nullptr || !composed->HasComponent("body")) continue;
     auto& body = composed->GetComponent<CEmbodiedEntity>("body");
-    if (&body == without || !in_world(body)) continue;
+    if (&body == without || !in_world(body.GetBody())) continue;
     const double t = entry_of(ray, world().place(body.GetBody()), world().form(body.GetBody()));
     if (t >= 0.0) found.emplace_back(&body, t);
   }

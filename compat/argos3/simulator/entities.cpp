@@ -13,6 +13,7 @@
 
 namespace argos {
 
+using tandem::compat::argos3::in_world;
 using tandem::compat::argos3::refuse;
 using tandem::compat::argos3::Session;
 using tandem::compat::argos3::world;
@@ -179,7 +180,7 @@ std::string CControllableEntity::GetTypeDescription() const {
 void CControllableEntity::SetEnabled(bool b_enabled) {
   CEntity::SetEnabled(b_enabled);
   auto* const robot = dynamic_cast<CRobotEntity*>(&GetRootEntity());
-  if (robot != nullptr && Session::get().entered() && world().there(robot->GetEmbodiedEntity().GetBody()))
+  if (robot != nullptr && in_world(robot->GetEmbodiedEntity().GetBody()))
     world().halt(robot->GetEmbodiedEntity().GetBody(), !b_enabled);
 }
 CAny CControllableEntity::AsAny() {

@@ -1,8 +1,5 @@
 #include "compat/argos3/simulator/hooks.hpp"
 
-#include <algorithm>
-#include <array>
-#include <deque>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -26,11 +23,13 @@ std::shared_ptr<WorldAdapter> shared_world() {
   return world;
 }
 
-/// What hooks of both kinds do: the first of them that is called in a phase lets the session see the world.
+/// What hooks of both kinds do: lets the session see the world.
 class ArgosHook : public core::Hook {
+  using Phase = WorldAdapter::Phase;
+
  public:
   ArgosHook(const SRegistration& made_by, const core::Element& options)
-      : made_by_(made_by), tree_(to_node(options)), file_(options.file), world_(shared_world()) {
+      : made_by_(made_by), tree_(to_node(options, true)), file_(options.file), world_(shared_world()) {
     world_->begin_afresh();
   }
   ~ArgosHook() override {
@@ -46,19 +45,19 @@ class ArgosHook : public core::Hook {
       throw std::runtime_error(
           "another run of ARGoS classes goes on in this process, which they have one of: start another process, as "
           "sweeps do");
-    look(c, c.tick);
+    look(c, c.tick, Phase::Other);
     if (const auto begins = world_->begins(); begins != WorldAdapter::Begins::Goes)
       Session::get().enter(*world_, begins == WorldAdapter::Begins::Again);
     if (!std::exchange(entered_, true)) begin(made_by_, *tree_);
   }
-  void before_step(core::HookContext& c) override { look(c, c.tick + 1); }
-  void before_sense(core::HookContext& c) override { look(c, c.tick + 1); }
-  void after_step(core::HookContext& c) override { look(c, c.tick + 1); }
+  void before_step(core::HookContext& c) override { look(c, c.tick + 1, Phase::Other); }
+  void before_sense(core::HookContext& c) override { look(c, c.tick + 1, Phase::Sense); }
+  void after_step(core::HookContext& c) override { look(c, c.tick + 1, Phase::Stepped); }
   bool is_done(core::HookContext& c) override {
-    look(c, c.tick);
+    look(c, c.tick, Phase::Other);
     return false;
   }
-  void after_run(core::HookContext& c) override { look(c, c.tick); }
+  void after_run(core::HookContext& c) override { look(c, c.tick, Phase::Other); }
   bool reset(std::uint64_t) override {
     world_->begin_again();
     return true;
@@ -70,7 +69,11 @@ class ArgosHook : public core::Hook {
   bool sees(const core::HookContext& c) const noexcept { return world_->may_be(c.space); }
 
  private:
-  void look(core::HookContext& c, hal::Tick clock) { world_->look(c, static_cast<std::uint32_t>(clock)); }
+  /// The first hook that is called after things have moved has the session look at all bodies.
+  void look(core::HookContext& c, hal::Tick clock, Phase phase) {
+    const bool begins = world_->look(c, static_cast<std::uint32_t>(clock), phase);
+    if (begins && phase != Phase::Other) Session::get().begin_phase();
+  }
 
   const SRegistration& made_by_;
   std::unique_ptr<ticpp::Element> tree_;
@@ -173,32 +176,22 @@ class Look final : public ArgosHook {
   void begin(const SRegistration&, ::argos::TConfigurationNode&) override {}
 };
 
-// --- hook types: each is a table of functions without data, so there is one table a class, of a fixed number ---
-
-constexpr std::size_t kMost = 256;
-std::vector<const SRegistration*>& entries() {
-  static std::vector<const SRegistration*> all;
-  return all;
-}
-
-template <std::size_t kNumber>
-std::unique_ptr<core::Hook> make_hook(const core::Element& options, core::Problems&) {
-  const SRegistration& made_by = *entries()[kNumber];
-  if (std::string_view(made_by.Kind) == "loop functions") return std::make_unique<LoopFunctions>(made_by, options);
-  return std::make_unique<UserFunctions>(made_by, options);
-}
-
-template <std::size_t... kNumbers>
-constexpr auto makers_of(std::index_sequence<kNumbers...>) {
-  return std::array{&make_hook<kNumbers>...};
-}
-constexpr auto kMakers = makers_of(std::make_index_sequence<kMost>());
-
-/// The table and the texts that it names.
+/// The table of a class and the texts that it names.
 struct NamedType {
   std::string name, summary;
   core::HookType type;
 };
+using Types = ClassTables<NamedType>;
+
+struct MakeHook {
+  template <std::size_t kNumber>
+  static std::unique_ptr<core::Hook> call(const core::Element& options, core::Problems&) {
+    const SRegistration& made_by = Types::registration(kNumber);
+    if (std::string_view(made_by.Kind) == "loop functions") return std::make_unique<LoopFunctions>(made_by, options);
+    return std::make_unique<UserFunctions>(made_by, options);
+  }
+};
+constexpr auto kMakers = functions_by_number<MakeHook, Types::kMost>();
 
 std::unique_ptr<core::Hook> make_look(const core::Element& options, core::Problems&) {
   static const SRegistration none = {"", "", "", nullptr, nullptr};
@@ -213,26 +206,16 @@ const core::HookType& look_hook() {
 }
 
 void register_hooks(const std::vector<const SRegistration*>& all, hal::Registrar& registrar) {
-  static std::deque<NamedType> types;
   for (const SRegistration* const one : all) {
     const std::string_view kind = one->Kind;
     if (kind != "loop functions" && kind != "user functions") continue;
-    const auto known = std::find(entries().begin(), entries().end(), one);  // of a library that was loaded before
-    const auto number = static_cast<std::size_t>(known - entries().begin());
-    if (number == kMost)
-      throw std::runtime_error("more than " + std::to_string(kMost) +
-                               " classes of loop functions and user functions in one process");
-    if (known == entries().end()) {
-      entries().push_back(one);
-      types.emplace_back();
-    }
-    NamedType& named = types[number];
-    named.name = (kind == "user functions" ? "qt-opengl " : "") + std::string(one->Label);
-    named.summary = "ARGoS " + std::string(kind) + " '" + one->ClassName + "'.";
-    named.type.name = named.name;
-    named.type.summary = named.summary;
-    named.type.make = kMakers[number];
-    registrar.add(named.type);
+    registrar.add(Types::of(*one, [&](NamedType& named, std::size_t number) {
+                    named.name = (kind == "user functions" ? "qt-opengl " : "") + std::string(one->Label);
+                    named.summary = "ARGoS " + std::string(kind) + " '" + one->ClassName + "'.";
+                    named.type.name = named.name;
+                    named.type.summary = named.summary;
+                    named.type.make = kMakers[number];
+                  }).type);
   }
 }
 

@@ -11,6 +11,7 @@
 namespace argos {
 
 using tandem::compat::argos3::Body;
+using tandem::compat::argos3::in_world;
 using tandem::compat::argos3::Led;
 using tandem::compat::argos3::place_of;
 using tandem::compat::argos3::refuse;
@@ -23,9 +24,9 @@ namespace {
 /// Of the robot, box or cylinder whose component this is; NONE: it is not in the world.
 Body body_of(const CEntity& component) {
   auto* const root = dynamic_cast<CComposableEntity*>(const_cast<CEntity*>(&component.GetRootEntity()));
-  if (root == nullptr || !Session::get().entered() || !root->HasComponent("body")) return {};
+  if (root == nullptr || !root->HasComponent("body")) return {};
   const Body body = root->GetComponent<CEmbodiedEntity>("body").GetBody();
-  return world().there(body) ? body : Body();
+  return in_world(body) ? body : Body();
 }
 
 Rgb8 rgb_of(const CColor& color) {
@@ -44,7 +45,7 @@ CLEDEntity::~CLEDEntity() {}
 const CColor& CLEDEntity::GetColor() const {
   if (m_pcOwner == nullptr) return m_cColor;
   const Body body = body_of(*m_pcOwner);
-  if (body.Kind == Body::NONE) return m_cColor;
+  if (body.Kind == Body::NONE || m_bUnlisted) return m_cColor;
   const std::vector<Led> leds = world().leds(body);
   if (m_unNumber < leds.size())
     m_cColor.Set(leds[m_unNumber].color.r, leds[m_unNumber].color.g, leds[m_unNumber].color.b);
@@ -54,7 +55,7 @@ void CLEDEntity::SetColor(const CColor& color) {
   m_cColor = color;
   if (m_pcOwner == nullptr) return;
   const Body body = body_of(*m_pcOwner);
-  if (body.Kind != Body::NONE) world().set_led(body, m_unNumber, rgb_of(color));
+  if (body.Kind != Body::NONE) m_bUnlisted = !world().set_led(body, m_unNumber, rgb_of(color));
 }
 std::string CLEDEntity::GetTypeDescription() const {
   return "led";
@@ -149,7 +150,7 @@ void CRABEquippedEntity::SetData(const CByteArray& data) {
            "its configuration lists no actuator range_and_bearing, or the message is too long");
 }
 void CRABEquippedEntity::ClearData() {
-  world().set_message(body_of(*this), {});
+  world().set_message(body_of(*this), std::vector<std::uint8_t>(GetMsgSize(), 0));
 }
 Real CRABEquippedEntity::GetRange() const {
   return world().rab_range_m(body_of(*this));
@@ -167,14 +168,15 @@ CAny CRABEquippedEntity::AsAny() {
 CLEDMedium::~CLEDMedium() {}
 CRABMedium::~CRABMedium() {}
 const CRABEquippedEntity::TSet& CRABMedium::GetRABsCommunicatingWith(CRABEquippedEntity& entity) const {
-  m_tNear.clear();
+  CRABEquippedEntity::TSet& near = entity.m_tNear;
+  near.clear();
   const CVector3 here = entity.GetAnchor().Position;
   for (const auto& entry : CSimulator::GetInstance().GetSpace().GetEntitiesByType("rab")) {
     auto* const other = any_cast<CRABEquippedEntity*>(entry.second);
     if (other != &entity && Distance(here, other->GetAnchor().Position) < Min(entity.GetRange(), other->GetRange()))
-      m_tNear.insert(other);
+      near.insert(other);
   }
-  return m_tNear;
+  return near;
 }
 
 // --- wheels and battery ---
@@ -245,6 +247,7 @@ CRobotEntity::CRobotEntity(const std::string& kind, const std::string& id, const
   for (CEntity* const component : parts) {
     if (component != nullptr) AddComponent(*component);
   }
+  if (kind == "foot-bot") m_pcBody->AddAnchor("turret");
 }
 CRobotEntity::~CRobotEntity() {}
 CWheeledEntity& CRobotEntity::Wheels() {

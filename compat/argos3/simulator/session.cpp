@@ -23,6 +23,19 @@ Context& loop_context() {
   return *loop_context_of_run();
 }
 
+/// Calls Destroy; its exception is told, since nobody is there to take it.
+template <class Functions>
+void destroy(Functions& functions, const std::string& what) {
+  const ContextScope scope(loop_context());
+  try {
+    functions.Destroy();
+  } catch (const std::exception& e) {
+    loop_context().tell(true, "error: in Destroy() of the " + what + ": " + e.what());
+  } catch (...) {
+    loop_context().tell(true, "error: in Destroy() of the " + what + ": an exception of unknown type");
+  }
+}
+
 }  // namespace
 
 void refuse(const std::string& who, const std::string& why){THROW_ARGOSEXCEPTION("\"" << who << "\": " << why)}
@@ -56,8 +69,8 @@ void Session::enter(WorldDoor& world, bool again) {
   loop_context().set_seed(world.seed());
   set_run_seed(world.seed());
   argos::CSimulator& simulator = argos::CSimulator::GetInstance();
-  argos::CSpaceAccess::NewRun(simulator);
   const ContextScope scope(loop_context());
+  argos::CSpaceAccess::NewRun(simulator, again);
   if (!again) return argos::CSpaceAccess::Clear(simulator.GetSpace());
   argos::CSpaceAccess::Sweep(simulator.GetSpace());
   argos::CSpaceAccess::FindAgain(simulator.GetSpace());
@@ -78,6 +91,7 @@ void Session::leave(const WorldDoor& world) {
 }
 
 void Session::begin_phase() {
+  if (!entered()) return;
   argos::CSpaceAccess::Look(argos::CSimulator::GetInstance().GetSpace());
 }
 void Session::end_phase() {
@@ -94,13 +108,17 @@ void Session::init_loop_functions(const ::argos::tandem_detail::SRegistration& m
                                   argos::TConfigurationNode& tree) {
   const ContextScope scope(loop_context());
   loop_functions_.reset(static_cast<argos::CLoopFunctions*>(made_by.Create()));
-  loop_functions_->Init(tree);
+  try {
+    loop_functions_->Init(tree);
+  } catch (...) {
+    loop_functions_.reset();
+    throw;
+  }
   end_phase();
 }
 void Session::destroy_loop_functions() {
   if (loop_functions_ == nullptr) return;
-  const ContextScope scope(loop_context());
-  loop_functions_->Destroy();
+  destroy(*loop_functions_, "loop functions");
   loop_functions_.reset();
 }
 
@@ -108,22 +126,24 @@ void Session::add_user_functions(const ::argos::tandem_detail::SRegistration& ma
                                  argos::TConfigurationNode& tree) {
   const ContextScope scope(loop_context());
   user_functions_.emplace_back(static_cast<argos::CQTOpenGLUserFunctions*>(made_by.Create()));
-  user_functions_.back()->Init(tree);
+  try {
+    user_functions_.back()->Init(tree);
+  } catch (...) {
+    user_functions_.pop_back();
+    throw;
+  }
 }
 void Session::destroy_user_functions() {
-  const ContextScope scope(loop_context());
-  for (const auto& functions : user_functions_) functions->Destroy();
+  for (const auto& functions : user_functions_) destroy(*functions, "user functions");
   user_functions_.clear();
 }
 
 void Session::pre_step() {
-  begin_phase();
   const ContextScope scope(loop_context());
   loop_functions().PreStep();
   end_phase();
 }
 void Session::post_step() {
-  begin_phase();
   const ContextScope scope(loop_context());
   loop_functions().PostStep();
   end_phase();
@@ -134,7 +154,6 @@ bool Session::is_finished() {
   return loop_functions().IsExperimentFinished();
 }
 void Session::post_experiment() {
-  begin_phase();
   const ContextScope scope(loop_context());
   loop_functions().PostExperiment();
   end_phase();
@@ -148,6 +167,7 @@ void Session::draw() {
   if (user_functions_.empty()) return;
   const ContextScope scope(loop_context());
   for (const auto& functions : user_functions_) functions->DrawAll();
+  end_phase();
 }
 
 // --- people ---

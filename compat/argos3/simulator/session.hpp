@@ -31,6 +31,8 @@ class Session {
   void destroy_user_functions();
 
   // --- phases of a tick; each begins with a look at all bodies, and ends with the deletion of removed entities ---
+  /// Once for all hooks.
+  void begin_phase();
   void pre_step();
   void post_step();
   bool is_finished();
@@ -63,7 +65,6 @@ class Session {
   bool painted = false;  ///< loop functions paint the floor
 
  private:
-  void begin_phase();
   void end_phase();
 
   WorldDoor* world_ = nullptr;
@@ -75,6 +76,9 @@ class Session {
 
 inline WorldDoor& world() {
   return Session::get().world();
+}
+inline bool in_world(const Body& body) {
+  return body.Kind != Body::NONE && Session::get().entered() && world().there(body);
 }
 
 /// Throws a CARGoSException that names the entity and the reason.
@@ -96,8 +100,8 @@ class CSpaceAccess {
   static void Look(CSpace& space);
   static void Sweep(CSpace& space);
   static void Clear(CSpace& space);
-  static void Follow(const CEmbodiedEntity& body, bool on);
-  static void NewRun(CSimulator& simulator);
+  /// `again`: the same run, from its start.
+  static void NewRun(CSimulator& simulator, bool again);
 };
 
 }  // namespace argos

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <dlfcn.h>
 #include <memory>
+#include <mutex>
 
 #include "compat/argos3/facade/library.hpp"
 #include "compat/argos3/simulator/own_run.hpp"
@@ -24,8 +25,8 @@ using compat::Session;
 struct CSimulator::SState {
   CSpace Space;
   CVisualization View;
-  ticpp::Document Document;
-  std::string DocumentFile;  ///< that it was read from
+  std::unique_ptr<TConfigurationNode> Configuration;  ///< made when it is asked for
+  std::mutex Reading;                                 ///< controllers may ask, on any thread
   std::vector<std::unique_ptr<CPhysicsEngine>> OwnedEngines;
   CPhysicsEngine::TVector Engines;
   std::vector<std::unique_ptr<CMedium>> OwnedMedia;
@@ -35,23 +36,11 @@ struct CSimulator::SState {
   mutable std::string File;
 
   TConfigurationNode& Root() {
-    const std::string& file = Session::get().file;
-    if (file.empty()) THROW_ARGOSEXCEPTION("no experiment is loaded")
-    if (DocumentFile != file) {
-      Document.LoadFile(file);
-      DocumentFile = file;
-    }
-    return *Document.FirstChildElement();
+    const std::lock_guard lock(Reading);
+    if (Configuration == nullptr) Configuration = compat::world().experiment();
+    return *Configuration;
   }
   TConfigurationNode* Part(const char* name) { return Root().FirstChildElement(name, false); }
-  /// An attribute of <framework><experiment>.
-  Real Setting(const char* name, Real otherwise) {
-    TConfigurationNode* const framework = Part("framework");
-    TConfigurationNode* const experiment =
-        framework == nullptr ? nullptr : framework->FirstChildElement("experiment", false);
-    if (experiment != nullptr) GetNodeAttributeOrDefault(*experiment, name, otherwise, otherwise);
-    return otherwise;
-  }
 
   void ReadEngines() {
     if (!Engines.empty()) return;
@@ -146,7 +135,7 @@ void CSimulator::SetRandomSeed(UInt32 seed) {
   Session::get().wanted_seed = seed;
 }
 CRandom::CRNG* CSimulator::GetRNG() {
-  if (m_psState->Random == nullptr) m_psState->Random = CRandom::CreateRNG("argos");
+  if (m_psState->Random == nullptr) m_psState->Random = CRandom::CreateRNG("argos");  // before any run
   return m_psState->Random;
 }
 
@@ -161,14 +150,10 @@ CLoopFunctions& CSimulator::GetLoopFunctions() {
 }
 
 UInt32 CSimulator::GetMaxSimulationClock() const {
-  return static_cast<UInt32>(m_psState->Setting("length", 0.0) * m_psState->Setting("ticks_per_second", 10.0) + 1e-6);
+  return compat::world().longest();
 }
 UInt32 CSimulator::GetNumThreads() const {
-  TConfigurationNode* const framework = m_psState->Part("framework");
-  TConfigurationNode* const system = framework == nullptr ? nullptr : framework->FirstChildElement("system", false);
-  UInt32 threads = 0;
-  if (system != nullptr) GetNodeAttributeOrDefault(*system, "threads", threads, threads);
-  return threads;
+  return compat::world().threads();
 }
 std::string CSimulator::GetInstallationDirectory() const {
   const char* const set = std::getenv("ARGOS_PREFIX");
@@ -233,9 +218,8 @@ void CSimulator::Execute() {
 void CSimulator::Reset() {
   Session& session = Session::get();
   // Without a seed of the file or of SetRandomSeed every run has another.
-  const bool fixed = session.wanted_seed || m_psState->Setting("random_seed", 0.0) != 0.0;
   const std::uint64_t now = session.world().seed();
-  const std::uint64_t seed = session.wanted_seed ? *session.wanted_seed : fixed ? now : now + 1;
+  const std::uint64_t seed = session.wanted_seed ? *session.wanted_seed : session.world().repeats() ? now : now + 1;
   if (m_psState->Own == nullptr)
     session.world().reset(seed);
   else
@@ -254,8 +238,9 @@ void CSimulator::Destroy() {
   LOGERR.Flush();
 }
 
-void CSpaceAccess::NewRun(CSimulator& simulator) {
-  simulator.m_psState->DocumentFile.clear();
+void CSpaceAccess::NewRun(CSimulator& simulator, bool again) {
+  if (!again) simulator.m_psState->Random = CRandom::CreateRNG("argos");
+  simulator.m_psState->Configuration.reset();
   simulator.m_psState->Engines.clear();
   simulator.m_psState->OwnedEngines.clear();
   simulator.m_psState->Media.clear();

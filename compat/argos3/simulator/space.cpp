@@ -30,7 +30,7 @@ struct CSpace::SState {
   TMapPerTypePerId ByType;
   ssize_t NextIndex = 0;
   CFloorEntity* Floor = nullptr;
-  std::vector<const CEmbodiedEntity*> Followed;
+  std::vector<const CEmbodiedEntity*> Bodies;
   // Removed in this phase: loops over the maps and vectors may stand at them.
   std::vector<CEntity*> RemovedRoots;
   std::set<const CEntity*> Removed;
@@ -39,8 +39,8 @@ struct CSpace::SState {
   bool IsFilled = false;                            ///< entities are made when they are asked for
   std::recursive_mutex Filling;                     ///< controllers may ask, on any thread
   std::set<std::string> FromFile, FromFileRemoved;  // ids
-  mutable CVector3 Size, Center;
-  mutable CRange<CVector3> Limits;
+  CVector3 Size, Center;
+  CRange<CVector3> Limits;
 
   SState() : Limits(CVector3(), CVector3(1.0, 1.0, 1.0)) {}
 
@@ -48,6 +48,7 @@ struct CSpace::SState {
     const std::string key = entity.GetContext() + entity.GetId();
     All.push_back(&entity);
     if (!entity.HasParent()) Roots.push_back(&entity);
+    if (const auto* const body = dynamic_cast<CEmbodiedEntity*>(&entity)) Bodies.push_back(body);
     entity.SetIndex(NextIndex++);
     ById[key] = &entity;
     TMapPerType& of_type = ByType[entity.GetTypeDescription()];
@@ -76,6 +77,7 @@ struct CSpace::SState {
     const auto gone = [this](const CEntity* entity) { return Removed.count(entity) != 0; };
     All.erase(std::remove_if(All.begin(), All.end(), gone), All.end());
     Roots.erase(std::remove_if(Roots.begin(), Roots.end(), gone), Roots.end());
+    Bodies.erase(std::remove_if(Bodies.begin(), Bodies.end(), gone), Bodies.end());
     VectorsHoldRemoved = false;
   }
 
@@ -183,19 +185,16 @@ UInt32 CSpace::GetSimulationClock() const {
   return Session::get().entered() ? world().clock() : 0;
 }
 const CVector3& CSpace::GetArenaSize() const {
-  const compat::Point size = world().arena_size();
-  m_psState->Size.Set(size[0], size[1], size[2]);
-  return m_psState->Size;
+  world();
+  return Filled().Size;
 }
 const CVector3& CSpace::GetArenaCenter() const {
-  const compat::Point center = world().arena_center();
-  m_psState->Center.Set(center[0], center[1], center[2]);
-  return m_psState->Center;
+  world();
+  return Filled().Center;
 }
 const CRange<CVector3>& CSpace::GetArenaLimits() const {
-  const CVector3 half = GetArenaSize() * 0.5;
-  m_psState->Limits.Set(GetArenaCenter() - half, GetArenaCenter() + half);
-  return m_psState->Limits;
+  world();
+  return Filled().Limits;
 }
 
 // --- for the session ---
@@ -221,17 +220,12 @@ std::unique_ptr<CEntity> entity_of(const compat::WorldDoor::Named& one) {
 
 /// Whether the file has a floor; `painted`: by loop functions.
 bool file_has_floor(bool& painted) {
-  painted = false;
-  try {
-    TConfigurationNode& root = CSimulator::GetInstance().GetConfigurationRoot();
-    TConfigurationNode* const arena = root.FirstChildElement("arena", false);
-    TConfigurationNode* const floor = arena == nullptr ? nullptr : arena->FirstChildElement("floor", false);
-    if (floor == nullptr) return false;
-    painted = floor->GetAttribute("source") == "loop_functions";
-    return true;
-  } catch (const std::exception&) {
-    return true;  // a world of a text
-  }
+  TConfigurationNode& root = CSimulator::GetInstance().GetConfigurationRoot();
+  TConfigurationNode* const arena = root.FirstChildElement("arena", false);
+  TConfigurationNode* const floor = arena == nullptr ? nullptr : arena->FirstChildElement("floor", false);
+  const std::string source = floor == nullptr ? std::string() : floor->GetAttribute("source");
+  painted = source == "loop_functions";
+  return painted || source == "image";  // else it is the grey one of every arena
 }
 
 }  // namespace
@@ -241,6 +235,9 @@ void CSpaceAccess::Fill(CSpace& space) {
   const std::lock_guard lock(s.Filling);
   if (s.IsFilled) return;
   s.IsFilled = true;
+  s.Size.Set(world().arena_size());
+  s.Center.Set(world().arena_center());
+  s.Limits.Set(s.Center - s.Size * 0.5, s.Center + s.Size * 0.5);
   if (file_has_floor(Session::get().painted)) s.Enter(*(s.Floor = new CFloorEntity));
   const auto enter = [&](const compat::WorldDoor::Named& one) {
     CEntity* const entity = entity_of(one).release();
@@ -283,7 +280,7 @@ void CSpaceAccess::FindAgain(CSpace& space) {
 
 void CSpaceAccess::Look(CSpace& space) {
   CSpace::SState& s = *space.m_psState;
-  for (const CEmbodiedEntity* const body : s.Followed) body->ReadWorld();
+  for (const CEmbodiedEntity* const body : s.Bodies) body->ReadWorld();
 }
 
 void CSpaceAccess::Sweep(CSpace& space) {
@@ -306,18 +303,6 @@ void CSpaceAccess::Clear(CSpace& space) {
   for (CEntity* const entity : CEntity::TVector(space.m_psState->Roots)) delete entity;
   delete space.m_psState;
   space.m_psState = new CSpace::SState;
-}
-
-void CSpaceAccess::Follow(const CEmbodiedEntity& body, bool on) {
-  std::vector<const CEmbodiedEntity*>& all = CSimulator::GetInstance().GetSpace().m_psState->Followed;
-  if (on) {
-    all.push_back(&body);
-    return;
-  }
-  const auto found = std::find(all.begin(), all.end(), &body);
-  if (found == all.end()) return;
-  *found = all.back();
-  all.pop_back();
 }
 
 }  // namespace argos

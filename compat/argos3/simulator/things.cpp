@@ -9,6 +9,7 @@ namespace argos {
 
 using tandem::compat::argos3::Body;
 using tandem::compat::argos3::Form;
+using tandem::compat::argos3::in_world;
 using tandem::compat::argos3::Lamp;
 using tandem::compat::argos3::Led;
 using tandem::compat::argos3::place_of;
@@ -28,10 +29,6 @@ std::vector<Led> leds_of(CLEDEquippedEntity& leds) {
   return all;
 }
 
-bool in_world(const CEmbodiedEntity& body) {
-  return body.GetBody().Kind != Body::NONE && Session::get().entered() && world().there(body.GetBody());
-}
-
 void join(const std::string& id, CEmbodiedEntity& body, CLEDEquippedEntity& leds, Form form) {
   Body added;
   form.movable = body.IsMovable();
@@ -42,7 +39,7 @@ void join(const std::string& id, CEmbodiedEntity& body, CLEDEquippedEntity& leds
 }
 
 void leave(CEmbodiedEntity& body) {
-  if (in_world(body)) world().remove(body.GetBody());
+  if (in_world(body.GetBody())) world().remove(body.GetBody());
 }
 
 bool find(const std::string& id, CEmbodiedEntity& body) {
@@ -55,7 +52,7 @@ bool find(const std::string& id, CEmbodiedEntity& body) {
 /// Of a body that is in the world, when it is.
 template <class Change>
 void change(const std::string& id, const CEmbodiedEntity& body, Change&& change_form) {
-  if (!in_world(body)) return;
+  if (!in_world(body.GetBody())) return;
   Form form = world().form(body.GetBody());
   change_form(form);
   const std::string why = world().change(body.GetBody(), form);

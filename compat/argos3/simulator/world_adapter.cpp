@@ -4,6 +4,8 @@
 #include <cmath>
 #include <iostream>
 
+#include "compat/argos3/facade/configuration.hpp"
+#include "core/scenario/scenario.hpp"
 #include "core/space/attitude.hpp"
 #include "core/space/stores.hpp"
 #include "hal/device/leds.hpp"
@@ -92,6 +94,14 @@ std::vector<core::Sketch::Point> points_of(const std::vector<Point>& points) {
   return all;
 }
 
+/// Calls `take` with what the robot sends, through either port. @returns what it returns; false: it has no such port
+template <class Take>
+bool with_message(core::Space& space, core::RobotId robot, Take&& take) {
+  if (auto* const many = space.port<hal::RangeAndBearingLongSend>(robot)) return take(*many);
+  auto* const plain = space.port<hal::RangeAndBearingSend>(robot);
+  return plain != nullptr && take(*plain);
+}
+
 /// Tandem gives an id once in a run, ARGoS again: the second "x" is "x~2" in the world.
 std::string next_id(const std::string& id, int number) {
   return number == 1 ? id : id + "~" + std::to_string(number);
@@ -100,14 +110,30 @@ constexpr int kMostOfOneId = 1'000'000;
 
 }  // namespace
 
-void WorldAdapter::look(core::HookContext& context, std::uint32_t clock) {
+bool WorldAdapter::look(core::HookContext& context, std::uint32_t clock, Phase phase) {
   space_ = &context.space;
   checkpoints_ = &context.checkpoints;
+  scenario_ = &context.scenario;
   ticks_per_second_ = static_cast<double>(context.ticks_per_second);
   seed_ = context.seed;
+  const bool begins = clock != clock_ || phase != phase_;
   clock_ = clock;
+  phase_ = phase;
+  return begins;
 }
 
+bool WorldAdapter::repeats() const {
+  return scenario_->seed.has_value();
+}
+std::uint32_t WorldAdapter::longest() const {
+  return static_cast<std::uint32_t>(scenario_->length_s * static_cast<double>(scenario_->ticks_per_second) + 1e-6);
+}
+std::uint32_t WorldAdapter::threads() const {
+  return static_cast<std::uint32_t>(scenario_->threads);
+}
+std::unique_ptr<ticpp::Element> WorldAdapter::experiment() const {
+  return to_node(scenario_->effective, true);
+}
 void WorldAdapter::reset(std::uint64_t seed) {
   checkpoints_->reset(seed);
 }
@@ -302,18 +328,25 @@ std::string WorldAdapter::set_battery(const Body& robot, double charge) {
   return text_of(space_->set_battery(robot_id(robot), charge));
 }
 
+double WorldAdapter::turret_rad(const Body& robot) const {
+  return space_->turret_rad(robot_id(robot));
+}
 std::vector<std::uint8_t> WorldAdapter::message(const Body& robot) const {
-  const auto* const sends = std::as_const(*space_).port<hal::RangeAndBearingSend>(robot_id(robot));
-  if (sends == nullptr || !sends->sending) return std::vector<std::uint8_t>(rab_bytes(robot), 0);
-  return {sends->payload.begin(), sends->payload.begin() + sends->size};
+  std::vector<std::uint8_t> bytes(rab_bytes(robot), 0);
+  with_message(*space_, robot_id(robot), [&](const auto& sends) {
+    if (sends.sending) bytes.assign(sends.payload.begin(), sends.payload.begin() + sends.size);
+    return true;
+  });
+  return bytes;
 }
 bool WorldAdapter::set_message(const Body& robot, const std::vector<std::uint8_t>& bytes) {
-  auto* const sends = space_->port<hal::RangeAndBearingSend>(robot_id(robot));
-  if (sends == nullptr || bytes.size() > sends->payload.size()) return false;
-  sends->sending = !bytes.empty();
-  sends->size = static_cast<std::uint8_t>(bytes.size());
-  std::copy(bytes.begin(), bytes.end(), sends->payload.begin());
-  return true;
+  return with_message(*space_, robot_id(robot), [&](auto& sends) {
+    if (bytes.size() > sends.payload.size()) return false;
+    sends.sending = !bytes.empty();
+    sends.size = static_cast<std::uint8_t>(bytes.size());
+    std::copy(bytes.begin(), bytes.end(), sends.payload.begin());
+    return true;
+  });
 }
 double WorldAdapter::rab_range_m(const Body& robot) const {
   if (robot.Kind != Body::ROBOT || !there(robot)) return 0.0;

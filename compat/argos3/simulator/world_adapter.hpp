@@ -12,8 +12,10 @@ namespace tandem::compat::argos3 {
 
 class WorldAdapter final : public WorldDoor {
  public:
-  /// Takes the world from a hook's context; `clock` ticks have begun.
-  void look(core::HookContext& context, std::uint32_t clock);
+  /// Phases of a tick that hooks see: before sensors look, after controllers, and others, in which nothing has moved.
+  enum class Phase : std::uint8_t { Sense, Stepped, Other };
+  /// Takes the world from a hook's context; `clock` ticks have begun. @returns whether the phase has just begun
+  bool look(core::HookContext& context, std::uint32_t clock, Phase phase);
   /// Whether it looks at this space, or at none yet.
   bool may_be(const core::Space& space) const noexcept { return space_ == nullptr || space_ == &space; }
   /// Whether a run begins: with a new world, or with the entities from before its reset.
@@ -27,6 +29,10 @@ class WorldAdapter final : public WorldDoor {
   std::uint32_t clock() const override { return clock_; }
   double ticks_per_second() const override { return ticks_per_second_; }
   std::uint64_t seed() const override { return seed_; }
+  bool repeats() const override;
+  std::uint32_t longest() const override;
+  std::uint32_t threads() const override;
+  std::unique_ptr<ticpp::Element> experiment() const override;
   void reset(std::uint64_t seed) override;
   void warn(const std::string& text) override;
   Point arena_center() const override;
@@ -53,6 +59,7 @@ class WorldAdapter final : public WorldDoor {
   bool set_led(const Body& body, std::size_t number, Rgb8 color) override;
   double battery(const Body& robot) const override;
   std::string set_battery(const Body& robot, double charge) override;
+  double turret_rad(const Body& robot) const override;
   std::vector<std::uint8_t> message(const Body& robot) const override;
   bool set_message(const Body& robot, const std::vector<std::uint8_t>& bytes) override;
   double rab_range_m(const Body& robot) const override;
@@ -78,7 +85,9 @@ class WorldAdapter final : public WorldDoor {
   core::Checkpoints* checkpoints_ = nullptr;
   double ticks_per_second_ = 10.0;
   std::uint64_t seed_ = 0;
+  const core::Scenario* scenario_ = nullptr;
   std::uint32_t clock_ = 0;
+  Phase phase_ = Phase::Other;
   Begins begins_ = Begins::Afresh;
 };
 

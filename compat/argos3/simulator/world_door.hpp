@@ -1,9 +1,11 @@
 // Interface between ARGoS' simulator classes and the world that runs: plain data, no headers of Tandem.
 #pragma once
 #include <argos3/core/simulator/entity/embodied_entity.h>
+#include <argos3/core/utility/configuration/argos_configuration.h>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -61,6 +63,11 @@ class WorldDoor {
   virtual std::uint32_t clock() const = 0;
   virtual double ticks_per_second() const = 0;
   virtual std::uint64_t seed() const = 0;
+  virtual bool repeats() const = 0;           ///< the experiment has a seed of its own
+  virtual std::uint32_t longest() const = 0;  ///< in ticks; 0: endless
+  virtual std::uint32_t threads() const = 0;
+  /// The root of the experiment, with all that was set beside its file.
+  virtual std::unique_ptr<ticpp::Element> experiment() const = 0;
   virtual void reset(std::uint64_t seed) = 0;  ///< when the tick is over
   virtual void warn(const std::string& text) = 0;
   virtual Point arena_center() const = 0;
@@ -89,6 +96,7 @@ class WorldDoor {
   virtual bool set_led(const Body& body, std::size_t number, Rgb8 color) = 0;
   virtual double battery(const Body& robot) const = 0;  ///< 0 to 1
   virtual std::string set_battery(const Body& robot, double charge) = 0;
+  virtual double turret_rad(const Body& robot) const = 0;
   virtual std::vector<std::uint8_t> message(const Body& robot) const = 0;
   virtual bool set_message(const Body& robot, const std::vector<std::uint8_t>& bytes) = 0;
   virtual double rab_range_m(const Body& robot) const = 0;

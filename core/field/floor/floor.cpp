@@ -58,16 +58,16 @@ std::unique_ptr<Field> make_floor(const Element& element, const FieldArea& area,
   const bool by_hooks = settings.source == "loop_functions";
   if (by_hooks) problem = too_many_pixels(area, settings.pixels_per_m);
   if (!problem.empty()) problems.push_back(problem_at(element, problem));
-  return std::make_unique<FloorField>(rectangle, by_hooks ? settings.pixels_per_m : 0.0, std::move(picture));
+  const float bare = element.argos ? 1.0F : FloorField::kGrey;  // ARGoS' loop functions paint white by themselves
+  return std::make_unique<FloorField>(rectangle, by_hooks ? settings.pixels_per_m : 0.0, std::move(picture), bare);
 }
 
 }  // namespace
 
 void FloorField::paint(const Painter& painter) {
   unpainted_ = false;
-  raster_ = Raster::painted(area_, pixels_per_m_, [&painter](double x_m, double y_m) {
-    return painter(x_m, y_m, static_cast<double>(kGrey));
-  });
+  raster_ = Raster::painted(area_, pixels_per_m_,
+                            [&](double x_m, double y_m) { return painter(x_m, y_m, static_cast<double>(bare_)); });
 }
 
 std::shared_ptr<const void> FloorField::keep() const {

@@ -11,9 +11,9 @@ class FloorField final : public PointField<FloorField> {
  public:
   static constexpr float kGrey = 0.5F;  ///< by default
 
-  /// `pixels_per_m`: of one that hooks paint; 0: they do not.
-  FloorField(const RasterArea& area, double pixels_per_m, Raster raster = {})
-      : area_(area), pixels_per_m_(pixels_per_m), raster_(std::move(raster)) {}
+  /// `pixels_per_m`: of one that hooks paint; 0: they do not. `bare`: its shade where they leave it out.
+  FloorField(const RasterArea& area, double pixels_per_m, Raster raster = {}, float bare = kGrey)
+      : area_(area), pixels_per_m_(pixels_per_m), raster_(std::move(raster)), bare_(bare) {}
 
   double at(const SpaceStores& /*stores*/, double x_m, double y_m, double /*z_m*/) const noexcept override {
     return static_cast<double>(raster_.empty() ? kGrey : raster_.at(x_m, y_m));
@@ -42,6 +42,7 @@ class FloorField final : public PointField<FloorField> {
   RasterArea area_;
   double pixels_per_m_;
   Raster raster_;
+  float bare_;
   bool unpainted_ = true;
 };
 

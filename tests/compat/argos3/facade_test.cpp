@@ -12,14 +12,18 @@
 #include <argos3/core/utility/math/ray3.h>
 #include <argos3/core/utility/math/rng.h>
 #include <argos3/core/utility/string_utilities.h>
+#include <argos3/plugins/simulator/visualizations/qt-opengl/qt_types.h>
 #include <cmath>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <limits>
 #include <map>
+#include <memory>
 #include <sstream>
 
 #include "compat/argos3/facade/configuration.hpp"
 #include "compat/argos3/facade/context.hpp"
+#include "hal/xml/xml.hpp"
 
 namespace argos {
 namespace {
@@ -41,6 +45,11 @@ TEST(ArgosAngles, AreWrappedIntoTheirTurn) {
     EXPECT_NEAR(std::sin(rad), Sin(u), kSmall);
   }
   EXPECT_EQ(CRadians(ARGOS_PI).SignedNormalize(), CRadians::PI);
+  EXPECT_EQ(CDegrees(540.0).SignedNormalize(), CDegrees(180.0)) << "from above to the upper bound";
+  EXPECT_EQ(CDegrees(-540.0).SignedNormalize(), CDegrees(-180.0));
+  EXPECT_EQ(CDegrees(720.0).UnsignedNormalize(), CDegrees(360.0));
+  const CDegrees fixed(5.0);
+  EXPECT_EQ(+fixed, fixed);
   EXPECT_NEAR(CDegrees(-90.0).UnsignedNormalize().GetValue(), 270.0, kSmall);
   EXPECT_NEAR(ToDegrees(CRadians::PI_OVER_THREE).GetValue(), 60.0, kSmall);
   EXPECT_NEAR(ToRadians(CDegrees(45.0)).GetValue(), CRadians::PI_OVER_FOUR.GetValue(), kSmall);
@@ -86,6 +95,31 @@ TEST(ArgosRanges, HoldTruncateWrapAndMap) {
   EXPECT_DOUBLE_EQ(mapped, 5.0);
   EXPECT_EQ(ToString(FromString<CRange<Real>>("-0.1:0.2")), "-0.1:0.2");
   EXPECT_THROW(FromString<CRange<Real>>("1"), CARGoSException);
+  EXPECT_TRUE(range == CRange<Real>(-1.0, 3.0) && range != CRange<Real>(-1.0, 4.0));
+  CDegrees turned;
+  CRange<CRadians>(CRadians::ZERO, CRadians::PI)
+      .MapValueIntoRange(turned, CRadians::PI_OVER_TWO, CRange<CDegrees>(CDegrees(0.0), CDegrees(90.0)));
+  EXPECT_NEAR(turned.GetValue(), 45.0, kSmall);
+  EXPECT_EQ(CRange<Real>(2.0, 2.0).NormalizeValue(2.0), 0.0) << "without length";
+}
+
+TEST(ArgosRanges, WrapWithoutLoops) {
+  const CRange<Real> range(-1.0, 3.0);
+  const Real infinity = std::numeric_limits<Real>::infinity();
+  Real value = infinity;
+  range.WrapValue(value);
+  EXPECT_EQ(value, infinity);
+  value = 1e300;
+  range.WrapValue(value);
+  EXPECT_TRUE(range.WithinMinBoundIncludedMaxBoundIncluded(value)) << value;
+  value = 5.0;
+  CRange<Real>(2.0, 2.0).WrapValue(value);
+  EXPECT_EQ(value, 5.0);
+  for (const auto& [whole, wrapped] : {std::pair{-7, 1}, {-1, 3}, {0, 0}, {4, 4}, {5, 1}, {9, 1}}) {
+    SInt32 v = whole;
+    CRange<SInt32>(0, 4).WrapValue(v);
+    EXPECT_EQ(v, wrapped) << whole;
+  }
 }
 
 TEST(ArgosVectors, TurnAndMultiply) {
@@ -106,6 +140,10 @@ TEST(ArgosVectors, TurnAndMultiply) {
   EXPECT_THROW(CVector3()[3], CARGoSException);
   EXPECT_EQ(FromString<CVector3>("1,2.5,-3"), CVector3(1.0, 2.5, -3.0));
   EXPECT_EQ(ToString(CVector2(1.0, -2.0)), "1,-2");
+  const CVector3 v(0.1, 0.2, 0.7);
+  EXPECT_NEAR(v.GetAngleWith(v * 3.0).GetValue(), 0.0, 1e-7) << "whatever rounding does";
+  EXPECT_EQ(ACos(1.0 + 1e-15).GetValue(), 0.0);
+  EXPECT_EQ(ASin(-1.0 - 1e-15), -CRadians::PI_OVER_TWO);
 }
 
 TEST(ArgosQuaternions, TurnAsTheirAnglesSay) {
@@ -132,6 +170,14 @@ TEST(ArgosQuaternions, TurnAsTheirAnglesSay) {
       }
     }
   }
+}
+
+TEST(ArgosQuaternions, KeepSmallAngles) {
+  CRadians angle;
+  CVector3 axis;
+  CQuaternion(CRadians(1e-9), CVector3::X).ToAngleAxis(angle, axis);
+  EXPECT_NEAR(angle.GetValue(), 1e-9, 1e-20);
+  expect_near(axis, CVector3::X);
 }
 
 TEST(ArgosQuaternions, LeadFromOneVectorToAnother) {
@@ -174,6 +220,14 @@ TEST(ArgosTexts, AreConverted) {
   EXPECT_EQ(ToString(true), "true");
   EXPECT_EQ(ToString(static_cast<UInt8>(7)), "7");
   EXPECT_EQ(FromString<int>("12"), 12);
+  EXPECT_EQ(FromString<UInt8>("65"), 65) << "a number, not a character";
+  EXPECT_EQ(FromString<CRange<UInt8>>("6:200").GetMax(), 200);
+  EXPECT_THROW(FromString<UInt8>("300"), CARGoSException);
+  EXPECT_THROW(FromString<SInt8>("-129"), CARGoSException);
+  EXPECT_THROW(FromString<CVector3>("1,,3"), CARGoSException);
+  EXPECT_THROW(FromString<CVector3>("1,x,3"), CARGoSException);
+  EXPECT_THROW(FromString<CVector3>("1,2,3,4"), CARGoSException);
+  EXPECT_THROW(FromString<CQuaternion>("1,2"), CARGoSException);
   std::vector<std::string> tokens;
   Tokenize("a, b,,c", tokens, ", ");
   EXPECT_THAT(tokens, testing::ElementsAre("a", "b", "c"));
@@ -235,6 +289,29 @@ TEST(ArgosBytes, ComeBackInTheOrderInWhichTheyWent) {
   EXPECT_THROW(bytes[0], CARGoSException);
 }
 
+enum EState { STATE_WAIT = 3 };
+enum class EMode : UInt16 { FAST = 0x102 };
+
+TEST(ArgosBytes, CarryEnumeratorsAndWhatIsNoNumber) {
+  CByteArray bytes;
+  const Real infinity = std::numeric_limits<Real>::infinity();
+  bytes << STATE_WAIT << EMode::FAST << infinity << -infinity << std::nan("");
+  const CByteArray& all = bytes;
+  const std::unique_ptr<CByteArray> mode(all(4, 6));
+  EXPECT_EQ(ToString(*mode), "CByteArray {1, 2}");
+  EXPECT_EQ(bytes.PopFront<EState>(), STATE_WAIT);
+  EXPECT_EQ(bytes.PopFront<EMode>(), EMode::FAST);
+  EXPECT_EQ(bytes.PopFront<double>(), infinity);
+  EXPECT_EQ(bytes.PopFront<double>(), -infinity);
+  EXPECT_TRUE(std::isnan(bytes.PopFront<double>()));
+}
+
+TEST(ArgosQt, HasTexts) {
+  EXPECT_EQ(("robots: " + QString::number(5) + QString::number(7U) + " of " + QString::number(0.5)).toStdString(),
+            "robots: 57 of 0.5");
+  EXPECT_EQ(QString("%2 after %1, %1").arg("a").arg(3).toStdString(), "3 after a, a");
+}
+
 TEST(ArgosSets, AreInOrderWithoutDoubles) {
   CSet<int> set;
   for (const int one : {3, 1, 2, 3}) set.insert(one);
@@ -276,10 +353,27 @@ TEST(ArgosNodes, AreReadChangedAndWritten) {
   SetNodeAttribute(d, "z", 2.5);
   AddChildNode(a, d);
   EXPECT_THAT(ToString(a), testing::HasSubstr("<d z=\"2.5\"/>"));
+  SetNodeAttribute(d, "exact", 0.123456789);
+  Real exact = 0.0;
+  GetNodeAttribute(d, "exact", exact);
+  EXPECT_EQ(exact, 0.123456789);
+  SetNodeAttribute(d, "byte", 300);
+  UInt8 byte = 0;
+  EXPECT_THROW(GetNodeAttribute(d, "byte", byte), CARGoSException);
   EXPECT_THROW(GetNodeAttribute(a, "none", x), CARGoSException);
   EXPECT_THROW(GetNode(a, "none"), CARGoSException);
   EXPECT_THROW(document.Parse("<a"), ticpp::Exception);
   EXPECT_THROW(document.LoadFile("/nowhere.argos"), ticpp::Exception);
+}
+
+TEST(ArgosNodes, KnowTheirParents) {
+  tandem::hal::Problems problems;
+  const auto root = tandem::compat::argos3::to_node(
+      tandem::hal::read_xml_text("<params><first/><last/></params>", "params", problems).value(), true);
+  ticpp::Element& first = *root->FirstChildElement("first");
+  EXPECT_EQ(first.Parent(), root.get());
+  EXPECT_EQ(first.NextSibling()->Value(), "last");
+  EXPECT_EQ(root->Parent(false), nullptr);
 }
 
 /// What a context is told.
@@ -300,6 +394,15 @@ TEST(ArgosLog, IsToldLineByLine) {
     stream << "c" << std::endl;
   }
   EXPECT_EQ(told.all, "a 1|b|!ff|c|!9|");
+}
+
+TEST(ArgosLog, HasOneFormat) {
+  Told told;
+  const tandem::compat::argos3::ContextScope scope(told);
+  const std::streamsize before = LOG.precision(3);
+  LOG << 0.123456 << std::setprecision(2) << " " << LOG.precision() << std::endl;
+  LOG.precision(before);
+  EXPECT_EQ(told.all, "0.123 2|");
 }
 
 TEST(ArgosChance, HasTheDistributionsThatItSays) {
@@ -370,6 +473,29 @@ TEST(ArgosChance, BeginsAnewAndHasCategories) {
   CRandom::CreateCategory("mine", 5);
   EXPECT_EQ(CRandom::CreateRNG("mine")->Uniform(unit), mine);
   CRandom::RemoveCategory("mine");
+  CRandom::CreateCategory("world", 42);
+  const auto of_world = [&](Told& context) {
+    const tandem::compat::argos3::ContextScope scope(context);
+    return CRandom::CreateRNG("world");
+  };
+  Told loops, robot;
+  loops.set_seed(1);
+  robot.set_seed(1, "ep0");
+  CRandom::CRNG *of_loops = of_world(loops), *of_robot = of_world(robot);
+  const Real drawn = of_loops->Uniform(unit), drawn_by_robot = of_robot->Uniform(unit);
+  EXPECT_NE(drawn, drawn_by_robot);
+  loops.set_seed(2);
+  EXPECT_EQ(of_loops->Uniform(unit), drawn) << "a category of one's own has its seed, whatever the run's";
+  CRandom::GetCategory("world").ResetRNGs();
+  EXPECT_EQ(of_robot->Uniform(unit), drawn_by_robot);
+  CRandom::SetSeedOf("world", 43);
+  CRandom::GetCategory("world").ReseedRNGs();
+  const Real other_world = of_loops->Uniform(unit);
+  EXPECT_NE(other_world, drawn);
+  EXPECT_NE(of_robot->Uniform(unit), drawn_by_robot);
+  CRandom::Reset();
+  EXPECT_EQ(of_loops->Uniform(unit), other_world);
+  CRandom::RemoveCategory("world");
   CRandom::CRNG copy(*a);
   EXPECT_EQ(copy.Uniform(unit), a->Uniform(unit));
 }

@@ -63,6 +63,17 @@ TEST(ArgosLibraries, ThatWereBuiltForARGoSAreRefusedWithWhatToDo) {
   EXPECT_THAT(run.errors(), AllOf(HasSubstr("was built for ARGoS 3"), HasSubstr("CMAKE_PREFIX_PATH")));
 }
 
+TEST(ArgosCommand, ShowsWhatTheFileShows) {
+  const Folder folder;
+  const auto command = [&](const std::string& visualization) {
+    folder.write("e.argos", "<argos-configuration><!-- <a/> -->\n" + visualization + "</argos-configuration>");
+    return shell("cd " + folder.path().string() + " && TANDEM_PROGRAM=/bin/echo " + std::string(test::kBuildDir) +
+                 "/lib/argos3/bin/argos3 -c e.argos");
+  };
+  EXPECT_EQ(command("<visualization>\n<qt-opengl/></visualization>"), "0 view e.argos\n");
+  EXPECT_EQ(command("<!-- off --><visualization><!--\n<qt-opengl/> --></visualization>"), "0 run e.argos\n");
+}
+
 TEST(ArgosLibraries, AreListedLikeOthers) {
   const Folder folder;
   Tandem describe({"describe", kLibrary}, folder.path());

@@ -32,13 +32,17 @@ std::vector<double> last_numbers(const std::string& said, const std::string& wor
   return all;
 }
 
-TEST(ArgosReadings, AreAFootBotsRing) {
+class ArgosReadings : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Of, ArgosReadings, roots(), root_name);
+
+TEST_P(ArgosReadings, AreAFootBotsRing) {
   ArgosWorld world({.label = "readings",
                     .robot = "foot-bot",
                     .sensors = "<footbot_proximity/><footbot_light/><footbot_base_ground/><footbot_motor_ground/>",
                     .more = "<light id=\"l\" position=\"0,3,1\" orientation=\"0,0,0\" color=\"yellow\" intensity=\"5\" "
                             "medium=\"leds\"/><box id=\"b\" size=\"0.1,1,0.5\" movable=\"false\"><body "
-                            "position=\"0.185,0,0\" orientation=\"0,0,0\"/></box>"});
+                            "position=\"0.185,0,0\" orientation=\"0,0,0\"/></box>",
+                    .root = GetParam()});
   world.run(2);
   const std::vector<double> proximity = last_numbers(world.said, "footbot_proximity");
   ASSERT_EQ(proximity.size(), 48U);
@@ -61,11 +65,12 @@ TEST(ArgosReadings, AreAFootBotsRing) {
   EXPECT_GT(std::fabs(motor[0]), 1.0) << "offsets are in cm";
 }
 
-TEST(ArgosReadings, CountAnEpucksSensorsCounterClockwiseByItsOwnCurve) {
+TEST_P(ArgosReadings, CountAnEpucksSensorsCounterClockwiseByItsOwnCurve) {
   ArgosWorld world({.label = "readings",
                     .sensors = "<epuck_proximity/><ground/>",
                     .more = "<box id=\"b\" size=\"0.1,1,0.5\" movable=\"false\"><body position=\"0,0.105,0\" "
-                            "orientation=\"90,0,0\"/></box>"});
+                            "orientation=\"90,0,0\"/></box>",
+                    .root = GetParam()});
   world.run(2);
   const std::vector<double> proximity = last_numbers(world.said, "epuck_proximity");
   ASSERT_EQ(proximity.size(), 16U);
@@ -77,11 +82,12 @@ TEST(ArgosReadings, CountAnEpucksSensorsCounterClockwiseByItsOwnCurve) {
   EXPECT_EQ(last_numbers(world.said, "ground").size(), 3U);
 }
 
-TEST(ArgosReadings, AreCentimetresOfWheels) {
+TEST_P(ArgosReadings, AreCentimetresOfWheels) {
   ArgosWorld world({.label = "readings",
                     .robot = "foot-bot",
                     .sensors = "<differential_steering/><positioning/><proximity/>",
-                    .params = "<params left=\"10\" right=\"10\"/>"});
+                    .params = "<params left=\"10\" right=\"10\" from=\"10\"/>",
+                    .root = GetParam()});
   world.run(11);
   const std::vector<double> wheels = last_numbers(world.said, "wheels");
   ASSERT_EQ(wheels.size(), 3U);
@@ -95,12 +101,13 @@ TEST(ArgosReadings, AreCentimetresOfWheels) {
   EXPECT_EQ(last_numbers(world.said, "proximity").size(), 24U);
 }
 
-TEST(ArgosReadings, AreMessagesInCentimetres) {
+TEST_P(ArgosReadings, AreMessagesInCentimetres) {
   ArgosWorld world({.label = "readings",
                     .robot = "foot-bot",
                     .sensors = "<range_and_bearing medium=\"rab\"/>",
                     .actuators = "<range_and_bearing/>",
-                    .robots = 2});
+                    .robots = 2,
+                    .root = GetParam()});
   world.run(3);
   const std::vector<double> heard = last_numbers(world.said, "heard");
   ASSERT_EQ(heard.size(), 12U);
@@ -109,12 +116,13 @@ TEST(ArgosReadings, AreMessagesInCentimetres) {
   EXPECT_EQ(heard[11], 5.0) << "the last";
 }
 
-TEST(ArgosReadings, AreBlobsOfWhatOthersShow) {
+TEST_P(ArgosReadings, AreBlobsOfWhatOthersShow) {
   ArgosWorld world({.label = "readings",
                     .robot = "foot-bot",
                     .sensors = "<colored_blob_omnidirectional_camera medium=\"leds\"/>",
                     .actuators = "<leds medium=\"leds\"/>",
-                    .robots = 2});
+                    .robots = 2,
+                    .root = GetParam()});
   world.run(3);
   EXPECT_THAT(world.said, HasSubstr("red@"));
   const std::vector<double> blobs = last_numbers(world.said, "blobs");
@@ -122,11 +130,45 @@ TEST(ArgosReadings, AreBlobsOfWhatOthersShow) {
   EXPECT_NEAR(blobs[1], 42.0, 10.0) << "cm to the nearest LED";
 }
 
-TEST(ArgosReadings, AreTurretAndScanner) {
+TEST_P(ArgosReadings, GoOnWhenTheRunBeginsAgain) {
+  ArgosWorld world({.label = "readings",
+                    .robot = "foot-bot",
+                    .sensors = "<colored_blob_omnidirectional_camera medium=\"leds\"/><footbot_distance_scanner/>",
+                    .actuators = "<leds medium=\"leds\"/><footbot_distance_scanner/>",
+                    .more =
+                        "<light id=\"l\" position=\"0.5,0.5,0.2\" orientation=\"0,0,0\" color=\"blue\" intensity=\"5\" "
+                        "medium=\"leds\"/>",
+                    .root = GetParam()});
+  world.run(3);
+  ASSERT_TRUE(world.world->reset(5).ok());
+  world.said.clear();
+  world.run(3);
+  EXPECT_EQ(last_numbers(world.said, "blobs").at(0), 1.0) << "Init enabled the camera, and runs once";
+  EXPECT_GT(last_numbers(world.said, "scanner").at(0), 0.0) << "the scanner, too";
+}
+
+TEST(ArgosPackets, HaveFourBytes) {
+  ArgosWorld world({.label = "readings",
+                    .sensors = "<epuck_range_and_bearing medium=\"rab\" data_size=\"4\"/>",
+                    .actuators = "<epuck_range_and_bearing medium=\"rab\" data_size=\"4\"/>",
+                    .robots = 2,
+                    .root = "argos-configuration"});
+  world.run(3);
+  const std::vector<double> packet = last_numbers(world.said, "packet");
+  ASSERT_EQ(packet.size(), 6U) << world.said;
+  EXPECT_NEAR(packet[0], 50.0, 1e-3);
+  EXPECT_EQ(packet[2], 7.0);
+  EXPECT_EQ(packet[5], 10.0) << "the fourth byte";
+}
+
+TEST_P(ArgosReadings, AreTurretAndScanner) {
   ArgosWorld world({.label = "readings",
                     .robot = "foot-bot",
                     .sensors = "<footbot_turret_encoder/><footbot_distance_scanner/><battery/>",
-                    .actuators = "<footbot_turret/><footbot_distance_scanner/><footbot_gripper/>"});
+                    .actuators = "<footbot_turret/><footbot_distance_scanner/><footbot_gripper/>",
+                    .params = "<params from=\"39\"/>",
+                    .engine = "dynamics2d",
+                    .root = GetParam()});
   world.run(40);
   EXPECT_NEAR(last_numbers(world.said, "turret").at(0), 1.5708, 0.01);
   const std::vector<double> scanner = last_numbers(world.said, "scanner");
@@ -135,13 +177,15 @@ TEST(ArgosReadings, AreTurretAndScanner) {
   EXPECT_EQ(scanner[2], scanner[0] + scanner[1]);
 }
 
-TEST(ArgosReadings, FlyAnEyeBot) {
+TEST_P(ArgosReadings, FlyAnEyeBot) {
   for (const char* engine : {"particle3d", "dynamics3d"}) {
     ArgosWorld world({.label = "readings",
                       .robot = "eye-bot",
                       .sensors = "<eyebot_proximity/><eyebot_light/><positioning/>",
                       .actuators = "<quadrotor_position/>",
-                      .engine = engine});
+                      .params = "<params from=\"99\"/>",
+                      .engine = engine,
+                      .root = GetParam()});
     world.run(100);
     EXPECT_NEAR(last_numbers(world.said, "place").at(2), 1.5, 0.1) << engine;
     EXPECT_EQ(last_numbers(world.said, "eyebot_proximity").size(), 48U);

@@ -1,5 +1,6 @@
 // Worlds of robots under ARGoS controllers of the library test_argos_controllers.
 #pragma once
+#include <gtest/gtest.h>
 #include <memory>
 #include <string>
 #include <vector>
@@ -15,7 +16,7 @@ namespace tandem::test {
 inline const hal::Catalog& argos_catalog() {
   static const hal::Catalog all = [] {
     hal::Catalog made = catalog();
-    const hal::Status good = made.add_from("module", &app::register_argos3);
+    const hal::Status good = made.add_from(std::string(hal::Catalog::kInside), &app::register_argos3);
     TANDEM_CHECK(good.ok(), good.error().message.c_str());
     return made;
   }();
@@ -34,7 +35,16 @@ struct Argos {
   double apart_m = 0.5;
   std::int64_t threads = 1;
   std::string library = std::string(kBuildDir) + "/tests/argos/libtest_argos_controllers.so";
+  std::string root = "tandem";
 };
+
+/// Roots of files: robots of ARGoS' have ports with more room, and no limit of wheels.
+inline auto roots() {
+  return testing::Values("tandem", "argos-configuration");
+}
+inline std::string root_name(const testing::TestParamInfo<const char*>& one) {
+  return one.index == 0 ? "TandemFiles" : "ArgosFiles";
+}
 
 /// A world of such robots in a row along x, from 0 on.
 class ArgosWorld {
@@ -46,13 +56,14 @@ class ArgosWorld {
                 std::to_string(a.apart_m * (i % 30)) + "," + std::to_string(a.apart_m * (i / 30)) +
                 ",0\"/><controller config=\"c\"/></" + a.robot + ">\n";
     const std::string text =
-        "<tandem><framework><experiment length=\"0\" ticks_per_second=\"10\" random_seed=\"3\"/></framework>"
+        "<" + a.root +
+        "><framework><experiment length=\"0\" ticks_per_second=\"10\" random_seed=\"3\"/></framework>"
         "<controllers><" +
         a.label + " id=\"c\" library=\"" + a.library + "\"><actuators>" + a.actuators + "</actuators><sensors>" +
         a.sensors + "</sensors>" + a.params + "</" + a.label +
         "></controllers><arena size=\"40,40,6\" center=\"5,5,2\">" + robots + a.more + "</arena><physics_engines><" +
-        a.engine +
-        " id=\"e\"/></physics_engines><media><led id=\"leds\"/><range_and_bearing id=\"rab\"/></media></tandem>";
+        a.engine + " id=\"e\"/></physics_engines><media><led id=\"leds\"/><range_and_bearing id=\"rab\"/></media></" +
+        a.root + ">";
     loader_ = std::make_unique<hal::PluginLoader>(std::vector<std::filesystem::path>{std::string(kBuildDir) + "/lib"},
                                                   argos_catalog());
     core::WorldOptions options;

@@ -137,18 +137,46 @@ TEST(ArgosFiles, NameDevicesAsTheEpucksPluginDoes) {
 }
 
 TEST(ArgosFiles, MaySendLongerMessages) {
-  const auto with_size = [](const std::string& root, const std::string& size) {
+  const auto with_size = [](const std::string& root, const std::string& size, const std::string& bridge = "") {
     std::string text = "<" + root + R"(><framework><experiment/></framework>
 <controllers><wander id="w" library="wander"/></controllers>
 <arena size="4,4,1"><e-puck id="a" rab_data_size=")" +
-                       size + R"("><body position="0,0,0"/><controller config="w"/></e-puck></arena></)" + root + ">";
+                       size + R"("><body position="0,0,0"/><controller config="w"/>)" + bridge + "</e-puck></arena></" +
+                       root + ">";
     return read(text);
   };
   EXPECT_EQ(
       with_size("argos-configuration", "30").good().robots.at(0).own_kind->part<hal::RangeAndBearingPart>()->payload,
       30);
   EXPECT_THAT(with_size("argos-configuration", "65").text(), HasSubstr("out of range"));
+  EXPECT_THAT(with_size("argos-configuration", "11", "<bridge link=\"serial:a\"/>").text(),
+              HasSubstr("<e-puck rab_data_size>: real robots send messages of 10 bytes at most"));
+  with_size("argos-configuration", "10", "<bridge link=\"serial:a\"/>").good();
   EXPECT_THAT(with_size("tandem", "30").text(), HasSubstr("out of range"));
+}
+
+TEST(ArgosFiles, TakeARobotsParametersInsteadOfItsConfigurations) {
+  for (const std::string root : {"argos-configuration", "tandem"}) {
+    const Outcome out = read("<" + root + R"(><framework><experiment/></framework>
+<controllers><wander id="w" library="wander"><params a="1" b="2"/></wander></controllers>
+<arena size="4,4,1"><e-puck id="a"><body position="0,0,0"/><controller config="w"><params a="3"/></controller></e-puck>
+</arena></)" + root + ">");
+    const Element& params = out.good().robots.at(0).params.value();
+    EXPECT_EQ(*params.attribute("a"), "3");
+    EXPECT_EQ(params.attribute("b") == nullptr, root == "argos-configuration") << root;
+  }
+}
+
+TEST(ArgosFiles, GiveTheEpucksPluginItsPackets) {
+  std::string text = file("argos-configuration");
+  const auto payload = [&] {
+    return read(text).good().robots.at(0).own_kind->part<hal::RangeAndBearingPart>()->payload;
+  };
+  EXPECT_EQ(payload(), 2);
+  text.replace(text.find("<proximity/>"), 12, "<epuck_range_and_bearing data_size=\"4\"/>");
+  EXPECT_EQ(payload(), 4);
+  text.replace(text.find("<e-puck id=\"a\""), 14, "<e-puck id=\"a\" rab_data_size=\"3\"");
+  EXPECT_EQ(payload(), 3) << "what the robot says itself counts";
 }
 
 TEST(Override, SetsAnAttributeOfEveryElementOfAName) {

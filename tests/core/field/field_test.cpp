@@ -224,6 +224,16 @@ TEST(Floor, NeedsItsPicture) {
   }
 }
 
+TEST(Floor, OfArgosFilesIsWhiteWithoutLoopFunctions) {
+  Scene scene;
+  scene.robot("a", 0, 0).field("floor", {{"source", "loop_functions", 5}});
+  scene.scenario.fields.back().argos = true;
+  const auto world = make(scene);
+  ASSERT_TRUE(world.world) << world.all_problems();
+  world.world->step();
+  EXPECT_EQ(world.world->space().floor(0.3, 0.1), 1.0);
+}
+
 TEST(Fields, SayWhatIsAtAPoint) {
   Scene scene;
   scene.robot("a", 1.5, 1.5).box(-0.5, 0.0, 0.1, 1.0);

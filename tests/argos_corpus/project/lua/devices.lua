@@ -47,7 +47,7 @@ local function report()
    tell("light_best", degrees(robot.light[best(robot.light)].angle))
    tell("base", ground(robot.base_ground))
    tell("motor", ground(robot.motor_ground))
-   tell("motor_offset", type(robot.motor_ground[1].offset))
+   tell("motor_offset", type(robot.motor_ground[1].offset.x))
    tell("messages", #robot.range_and_bearing)
    for i = 1, #robot.range_and_bearing do
       local m = robot.range_and_bearing[i]
@@ -73,7 +73,7 @@ local function report()
    tell("turret", type(robot.turret.rotation))
    tell("time_left", type(robot.battery.time_left))
    tell("battery", string.format("%.2f", robot.battery.available_charge))
-   tell("yaw", type(robot.positioning.orientation))
+   tell("yaw", robot.positioning.orientation ~= nil)
 end
 
 function step()

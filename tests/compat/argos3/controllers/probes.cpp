@@ -74,7 +74,7 @@ class CParameters : public CCI_Controller {
     GetNodeAttribute(tInner, "byte", unByte);
     GetNodeAttribute(tInner, "flag", bFlag);
     LOG << fReal << " " << cAngle << " " << cRange << " " << cVector << " " << cTurn << " " << cColor << " "
-        << static_cast<int>(unByte) << " " << std::boolalpha << bFlag << std::endl;
+        << static_cast<int>(unByte) << " " << std::boolalpha << bFlag << std::noboolalpha << std::endl;
     std::string strNames;
     TConfigurationNodeIterator itItem("item");
     for (itItem = itItem.begin(&t_node); itItem != itItem.end(); ++itItem) {

@@ -41,6 +41,7 @@ class CReadings : public CCI_Controller {
   void Init(TConfigurationNode& t_node) override {
     GetNodeAttributeOrDefault(t_node, "left", m_fLeft, 0.0);
     GetNodeAttributeOrDefault(t_node, "right", m_fRight, 0.0);
+    GetNodeAttributeOrDefault(t_node, "from", m_unFrom, 0U);
     Act("differential_steering", m_pcWheels);
     Act("range_and_bearing", m_pcSend);
     Act("epuck_range_and_bearing", m_pcEPuckSend);
@@ -76,6 +77,7 @@ class CReadings : public CCI_Controller {
       m_pcSend->SetData(m_pcSend->GetSize() - 1, 5);
     }
     if (m_pcFlyWith != nullptr) m_pcFlyWith->SetLinearVelocity(CVector3(0.1, 0.0, 0.0));
+    if (m_unSteps++ < m_unFrom) return;  // logs take some lines a second
     Ring<CCI_FootBotProximitySensor>("footbot_proximity");
     Ring<CCI_EPuckProximitySensor>("epuck_proximity");
     Ring<CCI_EyeBotProximitySensor>("eyebot_proximity");
@@ -169,6 +171,7 @@ class CReadings : public CCI_Controller {
   }
 
   Real m_fLeft = 0.0, m_fRight = 0.0;
+  UInt32 m_unFrom = 0, m_unSteps = 0;
   CCI_DifferentialSteeringActuator* m_pcWheels = nullptr;
   CCI_RangeAndBearingActuator* m_pcSend = nullptr;
   CCI_EPuckRangeAndBearingActuator* m_pcEPuckSend = nullptr;

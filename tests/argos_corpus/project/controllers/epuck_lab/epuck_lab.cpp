@@ -26,7 +26,9 @@ void CEPuckLab::Init(TConfigurationNode& t_node) {
       m_pcRABAct = GetActuator<CCI_EPuckRangeAndBearingActuator>("epuck_range_and_bearing");
       m_pcRABSens = GetSensor<CCI_EPuckRangeAndBearingSensor>("epuck_range_and_bearing");
       m_pcRGB = GetActuator<CCI_EPuckRGBLEDsActuator>("epuck_rgb_leds");
-      m_pcBase = GetActuator<CCI_EPuckBaseLEDsActuator>("epuck_base_leds");
+      if (HasActuator("epuck_base_leds")) {
+         m_pcBase = GetActuator<CCI_EPuckBaseLEDsActuator>("epuck_base_leds");
+      }
       m_pcCamera = GetSensor<CCI_EPuckOmnidirectionalCameraSensor>("epuck_omnidirectional_camera");
       m_pcLight = GetSensor<CCI_EPuckLightSensor>("epuck_light");
    } catch (CARGoSException&) {
@@ -63,11 +65,12 @@ void CEPuckLab::Report() {
    if (m_pcRABSens != NULL) {
       const CCI_EPuckRangeAndBearingSensor::TPackets& tPackets = m_pcRABSens->GetPackets();
       Tell("packets", tPackets.size());
-      for (size_t i = 0; i < tPackets.size(); ++i) {
-         CRadians cBearing(tPackets[i]->Bearing);
-         Tell("packet.says", ToString(static_cast<UInt32>(tPackets[i]->Data[0])) + " " +
-                                 ToString(static_cast<UInt32>(tPackets[i]->Data[3])));
-         Tell("packet.cm", tPackets[i]->Range);
+      if (!tPackets.empty()) {
+         const CCI_EPuckRangeAndBearingSensor::SReceivedPacket& sLast = *tPackets.back();
+         CRadians cBearing(sLast.Bearing);
+         Tell("packet.says",
+              ToString(static_cast<UInt32>(sLast.Data[0])) + " " + ToString(static_cast<UInt32>(sLast.Data[3])));
+         Tell("packet.cm", sLast.Range);
          Tell("packet.deg", ToDegrees(cBearing.SignedNormalize()).GetValue());
       }
    }
@@ -94,7 +97,9 @@ void CEPuckLab::ControlStep() {
    }
    if (m_pcRGB != NULL) {
       m_pcRGB->SetColors(CColor::CYAN);
-      m_pcBase->SwitchLEDs(true);
+      if (m_pcBase != NULL) {
+         m_pcBase->SwitchLEDs(true);
+      }
       m_pcCamera->Enable();
    }
    m_pcWheels->SetLinearVelocity(m_fLeft, m_fRight);

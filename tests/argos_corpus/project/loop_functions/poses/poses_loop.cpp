@@ -41,15 +41,19 @@ void CPosesLoop::PostStep() {
    if (std::find(m_vecTicks.begin(), m_vecTicks.end(), GetSpace().GetSimulationClock()) == m_vecTicks.end()) {
       return;
    }
-   CSpace::TMapPerType& tFootBots = GetSpace().GetEntitiesByType("foot-bot");
-   for (CSpace::TMapPerType::iterator it = tFootBots.begin(); it != tFootBots.end(); ++it) {
-      CFootBotEntity* pcFootBot = any_cast<CFootBotEntity*>(it->second);
-      Report(pcFootBot->GetId(), pcFootBot->GetEmbodiedEntity());
-      CWheels* pcController = dynamic_cast<CWheels*>(&pcFootBot->GetControllableEntity().GetController());
-      if (pcController != NULL && GetSpace().GetSimulationClock() == m_vecTicks.back()) {
-         LOG << "RESULT " << pcFootBot->GetId() << ".odometer_cm " << pcController->GetLeftDistance() << " "
-             << pcController->GetRightDistance() << std::endl;
+   try {
+      CSpace::TMapPerType& tFootBots = GetSpace().GetEntitiesByType("foot-bot");
+      for (CSpace::TMapPerType::iterator it = tFootBots.begin(); it != tFootBots.end(); ++it) {
+         CFootBotEntity* pcFootBot = any_cast<CFootBotEntity*>(it->second);
+         Report(pcFootBot->GetId(), pcFootBot->GetEmbodiedEntity());
+         CWheels* pcController = dynamic_cast<CWheels*>(&pcFootBot->GetControllableEntity().GetController());
+         if (pcController != NULL && GetSpace().GetSimulationClock() == m_vecTicks.back()) {
+            LOG << "RESULT " << pcFootBot->GetId() << ".odometer_cm " << pcController->GetLeftDistance() << " "
+                << pcController->GetRightDistance() << std::endl;
+         }
       }
+   } catch (CARGoSException&) {
+      /* There is no foot-bot */
    }
    try {
       CSpace::TMapPerType& tEPucks = GetSpace().GetEntitiesByType("e-puck");

@@ -265,7 +265,7 @@ void CSumsLoop::Texts() {
 void CSumsLoop::Chance() {
    m_pcRNG = CRandom::CreateRNG("argos");
    const CRange<Real> cReals(-2.0, 3.0);
-   const CRange<SInt32> cWholes(-2, 3);
+   const CRange<SInt32> cWholes(2, 7);
    const CRange<CRadians> cTurns(CRadians::ZERO, CRadians::TWO_PI);
    bool bReals = true, bWholes = true, bTurns = true;
    SInt32 nMin = 100, nMax = -100;

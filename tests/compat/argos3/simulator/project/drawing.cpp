@@ -40,6 +40,7 @@ class CDrawing : public CQTOpenGLUserFunctions {
   void DrawHat(CFootBotEntity& c_robot) {
     DrawCylinder(CVector3(0, 0, 0.3), CQuaternion(), 0.1, 0.05, CColor::BLACK);
     DrawText(CVector3(0, 0, 0.3), "hat of " + c_robot.GetId());
+    LOG << "hat at " << Round(1000 * c_robot.GetEmbodiedEntity().GetOriginAnchor().Position.GetX()) << std::endl;
   }
   CWalker* m_pcWalker = nullptr;
 };

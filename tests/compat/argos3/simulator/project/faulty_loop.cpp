@@ -14,6 +14,10 @@ class CFaultyLoop : public CLoopFunctions {
       THROW_ARGOSEXCEPTION_NESTED("cannot begin", ex);
     }
   }
+  virtual void Destroy() {
+    LOG << "destroyed" << std::endl;
+    if (m_strWhere == "Destroy") THROW_ARGOSEXCEPTION("the gate is stuck");
+  }
   virtual void PostStep() {
     LOG << "stepped" << std::endl;
     if (m_strWhere == "PostStep") throw std::runtime_error("out of water");

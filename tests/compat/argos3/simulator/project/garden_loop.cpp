@@ -73,9 +73,22 @@ class CGardenLoop : public CLoopFunctions {
       Robot("new2").Disable();
     }
     if (unClock == 4) AddEntity(*new CFootBotEntity("new1", "walk", CVector3(0, 1.5, 0)));  // again
+    if (unClock == 6) {
+      CRABEquippedEntity& cBoard = Robot("fb").GetRABEquippedEntity();
+      Expect(cBoard.GetData() == Message(10, 7), "what its controller sent");
+      cBoard.ClearData();
+      Expect(cBoard.GetData() == Message(10, 0), "zeros");
+    }
+    if (unClock == 8) Robot("fb").GetRABEquippedEntity().SetData(CByteArray(3, 9));
   }
   virtual void PostStep() {
     const UInt32 unClock = GetSpace().GetSimulationClock();
+    if (unClock == 6 || unClock == 8)
+      Expect(Robot("fb").GetRABEquippedEntity().GetData() == Message(10, 7), "its controller sends again");
+    if (unClock == 9) {
+      const CCI_RangeAndBearingSensor::TReadings& tHeard = Walker("new0").m_tHeard;
+      Expect(tHeard.size() == 1 && tHeard[0].Data == Message(10, 7), "hears all of the message of \"fb\"");
+    }
     if (unClock == 2) Expect(Abs(Walker("new0").m_cSeen.GetY() + 1.5) < 1e-9, "it saw itself moved in the same tick");
     if (unClock == 4) {
       Expect(Walker("new1").m_unSteps == 1, "it stepped in the tick in which it came");
@@ -87,6 +100,11 @@ class CGardenLoop : public CLoopFunctions {
   virtual void PostExperiment() { LOG << "checks " << m_unChecks << ", wrong " << m_unWrong << std::endl; }
 
  private:
+  static CByteArray Message(UInt32 un_size, UInt8 un_first) {
+    CByteArray cMessage(un_size);
+    cMessage[0] = un_first;
+    return cMessage;
+  }
   CFootBotEntity& Robot(const std::string& str_id) {
     return dynamic_cast<CFootBotEntity&>(GetSpace().GetEntity(str_id));
   }

@@ -15,6 +15,8 @@ int main(int argc, char** argv) {
     cSimulator.SetExperimentFileName(argv[1]);
     cSimulator.LoadExperiment();
     CTrialsLoop& cLoop = dynamic_cast<CTrialsLoop&>(cSimulator.GetLoopFunctions());
+    const CRange<Real> cUnit(0, 1);
+    std::cout << "first " << Round(1e6 * cSimulator.GetRNG()->Uniform(cUnit)) << std::endl;
     std::cout << "longest " << cSimulator.GetMaxSimulationClock() << " seed " << cSimulator.GetRandomSeed()
               << std::endl;
     for (UInt32 i = 0; i < 3; ++i) {
@@ -26,6 +28,10 @@ int main(int argc, char** argv) {
                 << Round(1000 * cLoop.Reached()) << " ends " << cLoop.Ends() << " resets " << cLoop.Resets()
                 << " drawn " << Round(1e6 * cLoop.Drawn()) << std::endl;
     }
+    cSimulator.Destroy();
+    cSimulator.SetRandomSeed(124);
+    cSimulator.LoadExperiment();
+    std::cout << "again " << Round(1e6 * cSimulator.GetRNG()->Uniform(cUnit)) << std::endl;
     cSimulator.Destroy();
   } catch (std::exception& ex) {
     std::cerr << "failed: " << ex.what() << std::endl;

@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 
+#include <argos3/core/simulator/not_carried_over.h>
 #include <argos3/core/utility/configuration/base_configurable_resource.h>
 #include <argos3/core/utility/datatypes/datatypes.h>
 
@@ -21,5 +22,7 @@ class CCI_Actuator : public CBaseConfigurableResource {
 };
 
 }  // namespace argos
+
+#define REGISTER_ACTUATOR(...) ARGOS3_NOT_CARRIED_OVER("own actuators: make a plug-in with a device of ours (docs/plugins.md)")
 
 #endif

@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 
+#include <argos3/core/simulator/not_carried_over.h>
 #include <argos3/core/utility/configuration/base_configurable_resource.h>
 #include <argos3/core/utility/datatypes/datatypes.h>
 
@@ -29,5 +30,7 @@ class CCI_Sensor : public CBaseConfigurableResource {
 };
 
 }  // namespace argos
+
+#define REGISTER_SENSOR(...) ARGOS3_NOT_CARRIED_OVER("own sensors: make a plug-in with a device of ours (docs/plugins.md)")
 
 #endif

@@ -1,6 +1,7 @@
 // Text to values and back.
 #ifndef TANDEM_ARGOS3_STRING_UTILITIES_H
 #define TANDEM_ARGOS3_STRING_UTILITIES_H
+#include <limits>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -18,16 +19,49 @@ std::string ToString(const T& value) {
   return out.str();
 }
 
+namespace tandem_detail {
+
+/// A byte of a number. @throws CARGoSException when it is not in the range of the type
+template <typename Byte>
+Byte ToByte(SInt32 number) {
+  if (number < std::numeric_limits<Byte>::min() || number > std::numeric_limits<Byte>::max())
+    THROW_ARGOSEXCEPTION(number << " is not in the range of a byte, " << +std::numeric_limits<Byte>::min() << " to "
+                                << +std::numeric_limits<Byte>::max())
+  return static_cast<Byte>(number);
+}
+
+// Bytes are numbers, not characters. False: the text is none.
+template <typename T>
+bool Read(std::istream& in, T& value) {
+  return static_cast<bool>(in >> std::boolalpha >> value);
+}
+template <typename Byte>
+bool ReadByte(std::istream& in, Byte& value) {
+  SInt32 number = 0;
+  if (!(in >> number)) return false;
+  value = ToByte<Byte>(number);
+  return true;
+}
+inline bool Read(std::istream& in, UInt8& value) {
+  return ReadByte(in, value);
+}
+inline bool Read(std::istream& in, SInt8& value) {
+  return ReadByte(in, value);
+}
+
+}  // namespace tandem_detail
+
 /// As `>>` reads it; T() where the text is none.
 template <typename T>
 T FromString(const std::string& text) {
   std::istringstream in(text);
   T value = T();
-  in >> std::boolalpha >> value;
+  tandem_detail::Read(in, value);
   return value;
 }
 
-/// Reads exactly `count` fields between delimiters.
+/// Reads exactly `count` fields between delimiters. @throws CARGoSException when there are fewer or more, or one is no
+/// such value
 template <typename T>
 void ParseValues(std::istream& in, UInt32 count, T* values, const char delimiter = '\n') {
   for (UInt32 i = 0; i < count; ++i) {
@@ -35,8 +69,13 @@ void ParseValues(std::istream& in, UInt32 count, T* values, const char delimiter
     if (!std::getline(in, field, delimiter))
       THROW_ARGOSEXCEPTION("Parse error: expected " << count << " values between '" << delimiter << "', found " << i);
     std::istringstream one(field);
-    one >> values[i];
+    T value = T();
+    if (!tandem_detail::Read(one, value))
+      THROW_ARGOSEXCEPTION("Parse error: '" << field << "' is no such value as is expected");
+    values[i] = value;
   }
+  if (in.peek() != std::istream::traits_type::eof())
+    THROW_ARGOSEXCEPTION("Parse error: expected " << count << " values between '" << delimiter << "', found more");
   in.clear();
 }
 

@@ -34,14 +34,9 @@ class CEmbodiedEntity : public CEntity {
   /// Throws on a robot.
   void SetMovable(bool b_movable);
 
-  const SAnchor& GetOriginAnchor() const {
-    Follow();
-    return *m_psOriginAnchor;
-  }
-  SAnchor& GetOriginAnchor() {
-    Follow();
-    return *m_psOriginAnchor;
-  }
+  /// Anchors are where their body was in this phase of the tick.
+  const SAnchor& GetOriginAnchor() const { return *m_psOriginAnchor; }
+  SAnchor& GetOriginAnchor() { return *m_psOriginAnchor; }
   SAnchor& AddAnchor(const std::string& str_id, const CVector3& c_offset_position = CVector3(),
                      const CQuaternion& c_offset_orientation = CQuaternion());
   void EnableAnchor(const std::string& str_id);
@@ -50,7 +45,7 @@ class CEmbodiedEntity : public CEntity {
   /// Throws: there is none of that name.
   const SAnchor& GetAnchor(const std::string& str_id) const;
   SAnchor& GetAnchor(const std::string& str_id);
-  std::map<std::string, SAnchor*>& GetAnchors();
+  std::map<std::string, SAnchor*>& GetAnchors() { return m_mapAnchors; }
   const SBoundingBox& GetBoundingBox() const;
   void CalculateBoundingBox();
 
@@ -77,18 +72,12 @@ class CEmbodiedEntity : public CEntity {
   void ReadWorld() const;
 
  private:
-  void Follow() const {
-    if (!m_bFollowed) StartFollowing();
-  }
-  void StartFollowing() const;
-
   SBody m_sBody;
   SAnchor* m_psOriginAnchor;
   std::map<std::string, SAnchor*> m_mapAnchors;
   CVector3 m_cInitPosition;
   CQuaternion m_cInitOrientation;
   bool m_bMovable;
-  mutable bool m_bFollowed = false;
   mutable SBoundingBox m_sBoundingBox;
 };
 

@@ -6,6 +6,7 @@
 #include <argos3/core/utility/configuration/argos_exception.h>
 #include <argos3/core/utility/configuration/tinyxml/ticpp.h>
 #include <argos3/core/utility/datatypes/datatypes.h>
+#include <argos3/core/utility/string_utilities.h>
 
 namespace argos {
 
@@ -39,7 +40,7 @@ struct TByteAttribute {
   static void Get(const TConfigurationNode& node, const std::string& name, T& value) {
     SInt32 number = 0;
     node.GetAttribute(name, &number);
-    value = static_cast<T>(number);
+    value = ToByte<T>(number);
   }
 };
 template <>

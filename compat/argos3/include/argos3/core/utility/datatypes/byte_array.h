@@ -12,9 +12,14 @@
 
 namespace argos {
 
-/// `<<` appends and `>>` takes from the front: whole numbers with their highest byte first, texts with a zero at their
+/// `<<` appends and `>>` takes from the front: whole numbers and enumerators with their highest byte first, texts with a zero at their
 /// end, real numbers as a whole part and an exponent.
 class CByteArray {
+  template <typename T>
+  static constexpr bool IsWhole() {
+    return std::is_integral<T>::value || std::is_enum<T>::value;
+  }
+
  public:
   CByteArray() {}
   CByteArray(const UInt8* bytes, size_t size) : m_vecBuffer(bytes, bytes + size) {}
@@ -52,14 +57,14 @@ class CByteArray {
     return value;
   }
   /// A new array of the bytes from `start` to before `end`, which its caller deletes; -1: to the last.
-  CByteArray* operator()(size_t start, ssize_t end = -1);
+  CByteArray* operator()(size_t start, ssize_t end = -1) const;
 
   template <typename T>
-  typename std::enable_if<std::is_integral<T>::value, CByteArray&>::type operator<<(T value) {
+  typename std::enable_if<IsWhole<T>(), CByteArray&>::type operator<<(T value) {
     return Append(static_cast<UInt64>(value), sizeof(T));
   }
   template <typename T>
-  typename std::enable_if<std::is_integral<T>::value, CByteArray&>::type operator>>(T& value) {
+  typename std::enable_if<IsWhole<T>(), CByteArray&>::type operator>>(T& value) {
     value = static_cast<T>(Fetch(sizeof(T)));
     return *this;
   }

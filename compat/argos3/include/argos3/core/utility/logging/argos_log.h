@@ -35,6 +35,19 @@ class CARGoSLog : public std::ostream {
   void Flush();
   void AddThreadSafeBuffer() {}
 
+  // The format is this thread's, as with manipulators.
+  std::streamsize precision() { return GetStream().precision(); }
+  std::streamsize precision(std::streamsize digits) { return GetStream().precision(digits); }
+  std::streamsize width() { return GetStream().width(); }
+  std::streamsize width(std::streamsize least) { return GetStream().width(least); }
+  char fill() { return GetStream().fill(); }
+  char fill(char with) { return GetStream().fill(with); }
+  fmtflags flags() { return GetStream().flags(); }
+  fmtflags flags(fmtflags flags) { return GetStream().flags(flags); }
+  fmtflags setf(fmtflags flags) { return GetStream().setf(flags); }
+  fmtflags setf(fmtflags flags, fmtflags mask) { return GetStream().setf(flags, mask); }
+  void unsetf(fmtflags flags) { GetStream().unsetf(flags); }
+
   template <typename T>
   CARGoSLog& operator<<(const T& value) {
     GetStream() << value;

@@ -17,18 +17,6 @@ class CDegrees;
 
 namespace tandem_detail {
 
-/// `v` within [-turn/2, turn/2], or [0, turn].
-inline Real SignedAngle(Real v, Real turn) {
-  if (v >= -0.5 * turn && v <= 0.5 * turn) return v;
-  const Real rest = std::remainder(v, turn);
-  return rest;
-}
-inline Real UnsignedAngle(Real v, Real turn) {
-  if (v >= 0.0 && v <= turn) return v;
-  const Real rest = std::fmod(v, turn);
-  return rest < 0.0 ? rest + turn : rest;
-}
-
 /// Arithmetic of an angle that is held as `Angle::m_fValue`.
 template <typename Angle>
 class TAngle {
@@ -40,12 +28,14 @@ class TAngle {
   Real GetAbsoluteValue() const { return std::fabs(m_fValue); }
   void SetValue(Real value) { m_fValue = value; }
 
+  /// Into [-turn/2, turn/2].
   Angle& SignedNormalize() {
-    m_fValue = SignedAngle(m_fValue, Angle::kTurn);
+    CRange<Real>(-0.5 * Angle::kTurn, 0.5 * Angle::kTurn).WrapValue(m_fValue);
     return Self();
   }
+  /// Into [0, turn].
   Angle& UnsignedNormalize() {
-    m_fValue = UnsignedAngle(m_fValue, Angle::kTurn);
+    CRange<Real>(0.0, Angle::kTurn).WrapValue(m_fValue);
     return Self();
   }
   Angle& Negate() {
@@ -53,7 +43,7 @@ class TAngle {
     return Self();
   }
 
-  Angle& operator+() { return Self(); }
+  Angle operator+() const { return Angle(m_fValue); }
   Angle operator-() const { return Angle(-m_fValue); }
   Angle& operator+=(const Angle& other) {
     m_fValue += other.GetValue();
@@ -170,10 +160,13 @@ inline void SinCos(const CRadians& a, Real& sine, Real& cosine) {
   sine = std::sin(a.GetValue());
   cosine = std::cos(a.GetValue());
 }
+// Rounding may lead out of [-1, 1]: the nearest that is inside counts.
 inline CRadians ASin(Real v) {
+  CRange<Real>(-1.0, 1.0).TruncValue(v);
   return CRadians(std::asin(v));
 }
 inline CRadians ACos(Real v) {
+  CRange<Real>(-1.0, 1.0).TruncValue(v);
   return CRadians(std::acos(v));
 }
 inline CRadians ATan2(const Real y, const Real x) {

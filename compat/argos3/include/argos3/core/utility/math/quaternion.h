@@ -53,7 +53,7 @@ class CQuaternion {
   void ToAngleAxis(CRadians& angle, CVector3& axis) const {
     const Real s = std::sqrt(m_fX * m_fX + m_fY * m_fY + m_fZ * m_fZ);
     if (s > 0.0) {
-      angle = 2.0 * ACos(m_fW > 1.0 ? 1.0 : m_fW < -1.0 ? -1.0 : m_fW);
+      angle = 2.0 * ATan2(s, m_fW);
       axis.Set(m_fX / s, m_fY / s, m_fZ / s);
     } else {
       angle = CRadians();

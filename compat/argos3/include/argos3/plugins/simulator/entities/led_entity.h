@@ -15,6 +15,7 @@ class CLEDEntity : public CPositionalEntity {
   ~CLEDEntity() override;
 
   const CColor& GetColor() const;
+  /// Cameras see LEDs that the robot's configuration lists.
   const CColor& GetInitColor() const { return m_cInitColor; }
   virtual void SetColor(const CColor& color);
   std::string GetTypeDescription() const override;
@@ -26,6 +27,7 @@ class CLEDEntity : public CPositionalEntity {
   CColor m_cInitColor;
   CLEDEquippedEntity* m_pcOwner = nullptr;  ///< whose LED it is
   UInt32 m_unNumber = 0;
+  bool m_bUnlisted = false;
 };
 
 }  // namespace argos

@@ -40,7 +40,9 @@ class CRABEquippedEntity : public CPositionalEntity {
   ARGOS3_NO_FUNCTION(SetMedium, "name the medium in the experiment file")
 
  private:
+  friend class CRABMedium;
   mutable CByteArray m_cData;
+  TSet m_tNear;  // of the medium
 };
 
 }  // namespace argos

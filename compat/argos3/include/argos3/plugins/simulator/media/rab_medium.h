@@ -13,9 +13,6 @@ class CRABMedium : public CMedium {
   /// Robots whose messages this one could hear, were all of them sending: those in range of each other, whatever stands
   /// between.
   const CRABEquippedEntity::TSet& GetRABsCommunicatingWith(CRABEquippedEntity& entity) const;
-
- private:
-  mutable CRABEquippedEntity::TSet m_tNear;
 };
 
 }  // namespace argos

@@ -40,6 +40,7 @@ inline void from_text(const std::string& text, std::string* out) {
 template <typename T>
 std::string to_text(const T& value) {
   std::ostringstream out;
+  out.precision(17);  // real numbers come back as they were
   out << value;
   return out.str();
 }
@@ -75,7 +76,7 @@ class Attribute {
 class Node {
  public:
   Node(const Node&);
-  Node& operator=(const Node&);
+  Node& operator=(const Node& other);
   virtual ~Node();
 
   /// The element's name.

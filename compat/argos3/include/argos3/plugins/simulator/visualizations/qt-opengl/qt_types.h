@@ -1,7 +1,9 @@
 // The types of Qt that user functions have in their signatures: keys, colours, texts on the window.
 #ifndef TANDEM_ARGOS3_QT_TYPES_H
 #define TANDEM_ARGOS3_QT_TYPES_H
+#include <cstdio>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace Qt {
@@ -74,10 +76,42 @@ class QString {
   QString(const char* text) : text_(text) {}
   QString(const std::string& text) : text_(text) {}
   static QString fromStdString(const std::string& text) { return QString(text); }
+  static QString number(int value) { return QString(std::to_string(value)); }
+  static QString number(unsigned value) { return QString(std::to_string(value)); }
   static QString number(long value) { return QString(std::to_string(value)); }
-  static QString number(double value) { return QString(std::to_string(value)); }
+  static QString number(unsigned long value) { return QString(std::to_string(value)); }
+  static QString number(long long value) { return QString(std::to_string(value)); }
+  static QString number(unsigned long long value) { return QString(std::to_string(value)); }
+  /// `format`: as of printf, with so many digits.
+  static QString number(double value, char format = 'g', int precision = 6) {
+    const char how[] = {'%', '.', '*', format, '\0'};
+    char text[512];
+    std::snprintf(text, sizeof text, how, precision, value);
+    return QString(text);
+  }
   std::string toStdString() const { return text_; }
-  QString operator+(const QString& other) const { return QString(text_ + other.text_); }
+  /// In the place of the lowest of %1, %2, … that are there.
+  QString arg(const QString& value) const {
+    for (int i = 1; i < 100; ++i) {
+      const std::string place = "%" + std::to_string(i);
+      std::size_t at = text_.find(place);
+      if (at == std::string::npos) continue;
+      std::string filled = text_;
+      for (; at != std::string::npos; at = filled.find(place, at + value.text_.size()))
+        filled.replace(at, place.size(), value.text_);
+      return QString(filled);
+    }
+    return *this;
+  }
+  template <typename Number>
+  typename std::enable_if<std::is_arithmetic<Number>::value, QString>::type arg(Number value) const {
+    return arg(number(value));
+  }
+  QString& operator+=(const QString& other) {
+    text_ += other.text_;
+    return *this;
+  }
+  friend QString operator+(const QString& a, const QString& b) { return QString(a.text_ + b.text_); }
 
  private:
   std::string text_;

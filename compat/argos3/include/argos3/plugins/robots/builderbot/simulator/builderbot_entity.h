@@ -1,0 +1,2 @@
+// CBuilderBotEntity: not carried over.
+#error "Tandem's ARGoS layer has no CBuilderBotEntity (builderbot_entity.h). Describe the robot as a kind of ours (docs/robot-files.md)."

@@ -1,0 +1,2 @@
+// CDroneEntity: not carried over.
+#error "Tandem's ARGoS layer has no CDroneEntity (drone_entity.h). Describe the robot as a kind of ours (docs/robot-files.md)."

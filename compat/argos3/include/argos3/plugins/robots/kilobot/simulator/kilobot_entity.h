@@ -1,0 +1,2 @@
+// CKilobotEntity: not carried over.
+#error "Tandem's ARGoS layer has no CKilobotEntity (kilobot_entity.h). Describe the robot as a kind of ours (docs/robot-files.md)."

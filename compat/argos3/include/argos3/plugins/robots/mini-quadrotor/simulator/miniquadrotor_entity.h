@@ -1,0 +1,2 @@
+// CMiniQuadrotorEntity: not carried over.
+#error "Tandem's ARGoS layer has no CMiniQuadrotorEntity (miniquadrotor_entity.h). Describe the robot as a kind of ours (docs/robot-files.md)."

@@ -1,0 +1,2 @@
+// CPrototypeEntity: not carried over.
+#error "Tandem's ARGoS layer has no CPrototypeEntity (prototype_entity.h). Describe the robot as a kind of ours (docs/robot-files.md)."

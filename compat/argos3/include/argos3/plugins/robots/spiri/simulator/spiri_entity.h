@@ -1,0 +1,2 @@
+// CSpiriEntity: not carried over.
+#error "Tandem's ARGoS layer has no CSpiriEntity (spiri_entity.h). Describe the robot as a kind of ours (docs/robot-files.md)."

@@ -1,0 +1,2 @@
+// CTagEquippedEntity: not carried over.
+#error "Tandem's ARGoS layer has no CTagEquippedEntity (tag_equipped_entity.h). Use CLEDEquippedEntity."

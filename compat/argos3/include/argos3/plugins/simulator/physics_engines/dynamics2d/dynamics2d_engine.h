@@ -1,0 +1,2 @@
+// CDynamics2DEngine: not carried over.
+#error "Tandem's ARGoS layer has no CDynamics2DEngine (dynamics2d_engine.h). Bodies belong to engines of ours; own ones are plug-ins (docs/engines.md)."

@@ -1,0 +1,2 @@
+// CPointMass3DEngine: not carried over.
+#error "Tandem's ARGoS layer has no CPointMass3DEngine (pointmass3d_engine.h). Bodies belong to engines of ours; own ones are plug-ins (docs/engines.md)."
