@@ -44,7 +44,7 @@ class Device {
   }
   /// As at the start: once, before Init.
   virtual void begin() {}
-  /// The experiment begins again. What Init has switched on stays on.
+  /// The experiment begins again. A device that Init switched on stays on.
   virtual void reset() { begin(); }
   virtual argos::CCI_Sensor* as_sensor() noexcept { return nullptr; }
   virtual argos::CCI_Actuator* as_actuator() noexcept { return nullptr; }
