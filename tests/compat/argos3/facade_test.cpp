@@ -373,6 +373,8 @@ TEST(ArgosNodes, KnowTheirParents) {
   ticpp::Element& first = *root->FirstChildElement("first");
   EXPECT_EQ(first.Parent(), root.get());
   EXPECT_EQ(first.NextSibling()->Value(), "last");
+  EXPECT_EQ(root->FirstChildElement("last")->Value(), "last") << "a literal is a name, and no bool";
+  EXPECT_EQ(first.NextSiblingElement("first", false), nullptr);
   EXPECT_EQ(root->Parent(false), nullptr);
 }
 

@@ -93,14 +93,18 @@ class Node {
   Node* Parent(bool must = true) const;
   Node* FirstChild(bool must = true) const;
   Node* FirstChild(const std::string& name, bool must = true) const;
+  Node* FirstChild(const char* name, bool must = true) const { return FirstChild(std::string(name), must); }
   Node* LastChild(bool must = true) const;
   Node* NextSibling(bool must = true) const;
   Node* NextSibling(const std::string& name, bool must = true) const;
+  Node* NextSibling(const char* name, bool must = true) const { return NextSibling(std::string(name), must); }
   Node* PreviousSibling(bool must = true) const;
   Element* FirstChildElement(bool must = true) const;
   Element* FirstChildElement(const std::string& name, bool must = true) const;
+  Element* FirstChildElement(const char* name, bool must = true) const { return FirstChildElement(std::string(name), must); }
   Element* NextSiblingElement(bool must = true) const;
   Element* NextSiblingElement(const std::string& name, bool must = true) const;
+  Element* NextSiblingElement(const char* name, bool must = true) const { return NextSiblingElement(std::string(name), must); }
   bool NoChildren() const;
   Node* InsertEndChild(const Node& child);
   Node* LinkEndChild(Node* child);
