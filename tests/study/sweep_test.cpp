@@ -203,7 +203,8 @@ TEST_F(Sweep, SaysHowFarItIsWhereThereIsNoTerminal) {
   experiment();
   study(R"(<set path="loop_functions.loop_seed" value="2"/><seeds first="1" count="4"/>)", "step_limit=\"5\"");
   EXPECT_EQ(tandem({"sweep", "s.xml", "--jobs", "2"}), 3);
-  EXPECT_THAT(errors_, testing::ContainsRegex("sweep: (50|75) %, about ")) << "the worker that waits may have been given two";
+  EXPECT_THAT(errors_, testing::ContainsRegex("sweep: (50|75) %, about "))
+      << "the worker that waits may have been given two";
   EXPECT_THAT(errors_, Not(HasSubstr("\r"))) << "no bar";
 }
 
