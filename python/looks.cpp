@@ -141,7 +141,7 @@ py::dict incidents(core::World& world) {
   made["commands_not_finite"] = all.commands_not_finite;
   made["controllers_thrown"] = all.controllers_thrown;
   made["bodies_escaped"] = all.bodies_escaped;
-  made["first"] = all.first;
+  made["first"] = all.first();
   return made;
 }
 

@@ -93,7 +93,7 @@ tandem_plugin(NAME {0} SOURCES {1})
 add_test(NAME runs COMMAND ${{Tandem_PROGRAM}} run ${{CMAKE_CURRENT_SOURCE_DIR}}/{0}.xml --quiet
   WORKING_DIRECTORY ${{CMAKE_CURRENT_BINARY_DIR}})
 add_test(NAME conforms COMMAND ${{Tandem_PROGRAM}} plugin check $<TARGET_FILE:{0}>)
-set_tests_properties(runs PROPERTIES ENVIRONMENT TANDEM_PLUGIN_PATH=${{CMAKE_BINARY_DIR}})
+set_tests_properties(runs PROPERTIES ENVIRONMENT TANDEM_PLUGIN_PATH=${{CMAKE_BINARY_DIR}}/..)
 )",
       name, sources);
 }

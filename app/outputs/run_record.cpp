@@ -31,10 +31,10 @@ hal::Status RunRecord::tick_done(const core::World& world, const hal::Json* befo
   return written([&] {
     hal::Status told = record_.tick_done(world.space(), done);
     if (told.ok() && before != nullptr) told = record_.event(done, *before);
-    const std::vector<std::string>& incidents = world.incidents().first;
+    const std::vector<core::IncidentCause>& incidents = world.incidents().causes;
     incidents_told_ = std::min(incidents_told_, incidents.size());  // fewer, where the run went back
     for (; incidents_told_ < incidents.size() && told.ok(); ++incidents_told_)
-      told = record_.event(done, {{"kind", "incident"}, {"text", incidents[incidents_told_]}});
+      told = record_.event(done, {{"kind", "incident"}, {"text", incidents[incidents_told_].text()}});
     if (!told.ok() || !record_.wants_fingerprint(done)) return told;
     if (!record_.wants_checks()) return record_.fingerprint(done, world.state_hash());
     const core::StateChecks checks = core::checks_of(world.state_view());

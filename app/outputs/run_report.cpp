@@ -64,7 +64,7 @@ void add_members(hal::Json& json, const RunResult& result, bool between_ticks) {
                        {"commands_not_finite", incidents.commands_not_finite},
                        {"controllers_thrown", incidents.controllers_thrown},
                        {"bodies_escaped", incidents.bodies_escaped},
-                       {"first", incidents.first}};
+                       {"first", incidents.first()}};
   const core::PhysicsAccuracy accuracy = world.accuracy();
   json["physics"] = {{"largest_constraint_error_m_s", accuracy.constraint_error_m_s},
                      {"unsolved_sub_steps", accuracy.unsolved_sub_steps},

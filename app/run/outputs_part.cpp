@@ -97,7 +97,7 @@ std::string failure_besides(const RunPlan& plan, const core::Run& run) {
                        incidents.controllers_thrown == 1 ? "a controller"
                                                          : fmt::format("{} controllers", incidents.controllers_thrown),
                        incidents.controllers_thrown == 1 ? "its robot" : "their robots",
-                       incidents.first.empty() ? "not known" : incidents.first.front());
+                       incidents.causes.empty() ? "not known" : incidents.causes.front().text());
   }
   if (!plan.as_before) return "it was not as in the run that it repeats";
   if (!plan.live_failure.empty()) return plan.live_failure;

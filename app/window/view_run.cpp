@@ -183,11 +183,11 @@ void RunView::tell_state(bool always) {
 }
 
 void RunView::tell_incidents() {
-  const std::vector<std::string>& incidents = run_.world.incidents().first;
+  const std::vector<core::IncidentCause>& incidents = run_.world.incidents().causes;
   if (incidents.size() < incidents_told_) incidents_told_ = incidents.size();  // the run went back
   for (; incidents_told_ < incidents.size(); ++incidents_told_) {
     const std::lock_guard hold(log_lock_);
-    window_->tell(log_messages_.entry(run_.world.tick(), "incident", incidents[incidents_told_]));
+    window_->tell(log_messages_.entry(run_.world.tick(), "incident", incidents[incidents_told_].text()));
   }
 }
 

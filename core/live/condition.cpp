@@ -118,7 +118,7 @@ std::string Conditions::who(const Condition& c, const World& world) {
 
 std::uint64_t Conditions::incidents_of(const World& world) noexcept {
   const Incidents& i = world.incidents();
-  return i.controllers_thrown + i.bodies_escaped + i.first.size();
+  return i.controllers_thrown + i.bodies_escaped + i.causes.size();
 }
 
 void Conditions::forget(const World& world) noexcept {
@@ -132,8 +132,9 @@ std::string Conditions::check(const World& world) {
     if (c.incident) {
       const std::uint64_t incidents = incidents_of(world);
       if (incidents > incidents_)
-        now = world.incidents().first.empty() ? "an incident"
-                                              : "incident: " + world.incidents().first.at(world.incidents().latest);
+        now = world.incidents().causes.empty()
+                  ? "an incident"
+                  : "incident: " + world.incidents().causes.at(world.incidents().latest).text();
       incidents_ = incidents;
       c.held = false;
     } else {

@@ -30,6 +30,11 @@ std::size_t end_of_number(std::string_view text, std::size_t at) noexcept {
   return at;
 }
 
+void meet(IncidentCause& cause, std::uint32_t body) {
+  const auto place = std::ranges::lower_bound(cause.met, body);
+  if (place == cause.met.end() || *place != body) cause.met.insert(place, body);
+}
+
 }  // namespace
 
 std::string cause_of(std::string_view text) {
@@ -53,6 +58,10 @@ std::string with_others(std::string_view who, std::size_t others, std::string_vi
          std::string(what);
 }
 
+std::string IncidentCause::text() const {
+  return with_others(who, met.size() - 1, what);
+}
+
 void Incidents::note(std::uint32_t body, std::string who, std::string what) {
   who = hal::printable(who);
   what = hal::printable(hal::shortened(what));
@@ -60,21 +69,30 @@ void Incidents::note(std::uint32_t body, std::string who, std::string what) {
   auto cause = std::find_if(causes.begin(), causes.end(), [&](const IncidentCause& c) { return c.key == key; });
   if (cause == causes.end()) {
     if (causes.size() == kCauses) return;
-    first.push_back(who + what);
     cause = causes.insert(cause, {std::move(key), std::move(who), std::move(what), {}, 0});
   }
   latest = static_cast<std::uint64_t>(cause - causes.begin());
-  const auto place = std::lower_bound(cause->met.begin(), cause->met.end(), body);
-  if (place == cause->met.end() || *place != body) cause->met.insert(place, body);
+  meet(*cause, body);
+}
+
+bool Incidents::note_again(std::uint32_t body, std::string_view begin) {
+  const auto cause = std::ranges::find_if(causes, [&](const IncidentCause& c) { return c.key.starts_with(begin); });
+  if (cause == causes.end()) return false;
+  latest = static_cast<std::uint64_t>(cause - causes.begin());
+  meet(*cause, body);
+  return true;
+}
+
+std::vector<std::string> Incidents::first() const {
+  std::vector<std::string> texts;
+  for (const IncidentCause& cause : causes) texts.push_back(cause.text());
+  return texts;
 }
 
 void Incidents::tell(const hal::Log& log, bool all, hal::Severity severity) {
-  for (std::size_t i = 0; i < causes.size(); ++i) {
-    IncidentCause& cause = causes[i];
-    if (cause.met.size() == cause.told) continue;
-    first[i] = with_others(cause.who, cause.met.size() - 1, cause.what);
-    if (cause.told > 0 && !all) continue;
-    log.write(severity, (cause.told > 0 ? "by the end: " : "") + first[i]);
+  for (IncidentCause& cause : causes) {
+    if (cause.met.size() == cause.told || (cause.told > 0 && !all)) continue;
+    log.write(severity, (cause.told > 0 ? "by the end: " : "") + cause.text());
     cause.told = cause.met.size();
   }
 }

@@ -23,6 +23,8 @@ struct IncidentCause {
   std::vector<std::uint32_t> met;  ///< numbers of all bodies with it, in order
   std::uint64_t told = 0;          ///< bodies that the log has counted
 
+  std::string text() const;  ///< "robot 'ep3' (and 4 more) left the arena at tick 12"
+
   void remember(auto& archive) { archive(key, who, what, met, told); }
 };
 
@@ -34,18 +36,22 @@ struct Incidents {
   std::uint64_t commands_not_finite = 0;
   std::uint64_t controllers_thrown = 0;
   std::uint64_t bodies_escaped = 0;
-  std::vector<std::string> first;     ///< the first few causes, each naming a robot, tick, event, and to how many
-  std::vector<IncidentCause> causes;  ///< of `first`
+  std::vector<IncidentCause> causes;  ///< the first few
   std::uint64_t latest = 0;           ///< of these, that happened last
+
+  /// The first few causes, each naming a robot, tick, event, and to how many others it happened.
+  std::vector<std::string> first() const;
 
   /// A body did or met something: "robot 'ep3'", " left the arena at tick 12"; `body` is its number.
   void note(std::uint32_t body, std::string who, std::string what);
+  /// The same for a cause that begins so and has been noted, without making texts. @returns false where none has.
+  bool note_again(std::uint32_t body, std::string_view begin);
   /// Logs causes that are new since the last call; with `all`, also those that more bodies have met since they were
   /// logged.
   void tell(const hal::Log& log, bool all, hal::Severity severity = hal::Severity::Warning);
 
   void remember(auto& archive) {
-    archive(commands_clamped, commands_not_finite, controllers_thrown, bodies_escaped, first, causes, latest);
+    archive(commands_clamped, commands_not_finite, controllers_thrown, bodies_escaped, causes, latest);
   }
 };
 

@@ -195,21 +195,18 @@ void World::Impl::report_excess(std::size_t index) {
                                                                      "unit has that of its class (`tandem describe`)"));
 }
 
-/// A command of this robot that is no finite number.
+/// A command of this robot that is no finite number. A robot may do that in every tick: texts are made
+/// once.
 void World::Impl::report_not_finite(std::uint32_t entity, const RobotGroup& group) {
-  const hal::RobotKind& kind = *group.kind;
   const bool more = std::any_of(group.ports.begin(), group.ports.end(), [](const hal::PortType* port) {
     return port->limit != nullptr && port->slow_down == nullptr;  // than what moves it
   });
-  incidents.note(number_of(entity), controller_of(entity),
-                 std::string(" commanded ") +
-                     (kind.flies() ? "a flight"
-                      : more       ? "something"
-                                   : "a wheel speed") +
-                     " that is not a finite number" + at_tick() +
-                     (kind.flies() ? ": it hovers for this tick"
-                      : more       ? ": that device is off for this tick"
-                                   : ": wheels stopped for this tick"));
+  const auto [what, outcome] =
+      group.kind->flies() ? std::pair(" commanded a flight that is not a finite number", ": it hovers for this tick")
+      : more ? std::pair(" commanded something that is not a finite number", ": that device is off for this tick")
+             : std::pair(" commanded a wheel speed that is not a finite number", ": wheels stopped for this tick");
+  if (incidents.note_again(number_of(entity), what)) return;
+  incidents.note(number_of(entity), controller_of(entity), what + at_tick() + outcome);
 }
 
 void World::Impl::report_thrown(std::uint32_t entity, const std::string& why) {

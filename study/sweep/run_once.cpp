@@ -159,7 +159,7 @@ RunOutcome Runner::run(const RunPlan& plan) {
     const core::Incidents& incidents = world.incidents();
     outcome.failure = run.failure();
     if (incidents.controllers_thrown > 0)
-      outcome.failure = incidents.first.empty() ? "a controller threw" : incidents.first.front();
+      outcome.failure = incidents.causes.empty() ? "a controller threw" : incidents.causes.front().text();
     outcome.done = outcome.failure.empty();
     if (!outcome.done) outcome.ended = "failed";
   }

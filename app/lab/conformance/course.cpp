@@ -59,7 +59,7 @@ bool Course::runs() {
     say(Verdict::Fault, "runs", failure);
     return false;
   }
-  for (const std::string& incident : world->incidents().first) {
+  for (const std::string& incident : world->incidents().first()) {
     if (world->incidents().controllers_thrown > 0) {
       say(Verdict::Fault, "runs", incident);
       return false;

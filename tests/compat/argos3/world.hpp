@@ -85,14 +85,14 @@ class ArgosWorld {
     ASSERT_NE(world, nullptr) << problems;
     for (int i = 0; i < steps; ++i) world->step();
     std::string all;
-    for (const std::string& incident : world->incidents().first) all += incident + "\n";
+    for (const std::string& incident : world->incidents().first()) all += incident + "\n";
     EXPECT_EQ(world->incidents().controllers_thrown, 0U) << all;
   }
   /// What went wrong within so many steps.
   std::string incident(int steps = 1) {
     if (world == nullptr) return problems;
     for (int i = 0; i < steps; ++i) world->step();
-    return world->incidents().first.empty() ? "none" : world->incidents().first.front();
+    return world->incidents().first().empty() ? "none" : world->incidents().first().front();
   }
 
   std::string said, problems;

@@ -83,19 +83,19 @@ class Scripted {
     ASSERT_NE(world, nullptr) << problems;
     for (int i = 0; i < steps; ++i) world->step();
     std::string all;
-    for (const std::string& incident : world->incidents().first) all += incident + "\n";
+    for (const std::string& incident : world->incidents().first()) all += incident + "\n";
     EXPECT_EQ(world->incidents().controllers_thrown, 0U) << all;
   }
   /// The first incident after so many steps.
   std::string incident(int steps = 1) {
     if (world == nullptr) return problems;
     for (int i = 0; i < steps; ++i) world->step();
-    return world->incidents().first.empty() ? "none" : world->incidents().first.front();
+    return world->incidents().first().empty() ? "none" : world->incidents().first().front();
   }
   /// All incidents that are kept, without the folder, which is another one in every world.
   std::string incidents() const {
     std::string all;
-    for (std::string one : world->incidents().first) {
+    for (std::string one : world->incidents().first()) {
       for (std::size_t at = 0; (at = one.find(folder_.string() + "/")) != std::string::npos;)
         one.erase(at, folder_.string().size() + 1);
       all += one + "\n";

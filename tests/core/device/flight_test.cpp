@@ -94,9 +94,9 @@ TEST(Flight, APositionGoesBeforeASpeedAndWhatIsNoNumberHovers) {
   steps(world, 10);  // on hold: the speed counts
   EXPECT_GT(pose(world, "e").y_m, 0.3);
   EXPECT_EQ(world->incidents().commands_not_finite, 1U);
-  ASSERT_EQ(world->incidents().first.size(), 1U);
+  ASSERT_EQ(world->incidents().first().size(), 1U);
   EXPECT_EQ(
-      world->incidents().first[0],
+      world->incidents().first()[0],
       "controller of robot 'e' commanded a flight that is not a finite number at tick 20: it hovers for this tick");
   steps(world, 1);
   EXPECT_EQ(world->incidents().commands_not_finite, 2U);

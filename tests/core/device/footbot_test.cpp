@@ -74,8 +74,8 @@ TEST(Turret, ClampsSpeedsAndIsOffAtWhatIsNoNumber) {
   world->step();
   EXPECT_EQ(command<hal::TurretDrive>(world, "fb").mode, hal::TurretMode::Off);
   EXPECT_EQ(world->incidents().commands_not_finite, 1U);
-  ASSERT_FALSE(world->incidents().first.empty());
-  EXPECT_THAT(world->incidents().first[0], HasSubstr("robot 'fb' commanded something that is not a finite number"));
+  ASSERT_FALSE(world->incidents().first().empty());
+  EXPECT_THAT(world->incidents().first()[0], HasSubstr("robot 'fb' commanded something that is not a finite number"));
 }
 
 TEST(Turret, NoiseIsCentredAndAsLargeAsAsked) {

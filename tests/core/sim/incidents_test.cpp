@@ -39,7 +39,7 @@ TEST(Incidents, OfOneCauseAreOneLineWithTheNumberOfOthers) {
   incidents.note(7, "robot 'ep7'", " left at tick 5");
   incidents.note(7, "robot 'ep7'", " fell");
   incidents.tell(lines.log(), false);
-  EXPECT_THAT(incidents.first, ElementsAre("robot 'ep4' (and 3 more) left at tick 3", "robot 'ep7' fell"));
+  EXPECT_THAT(incidents.first(), ElementsAre("robot 'ep4' (and 3 more) left at tick 3", "robot 'ep7' fell"));
   EXPECT_THAT(lines.all, ElementsAre("robot 'ep4' (and 2 more) left at tick 3", "robot 'ep7' fell"));
   incidents.tell(lines.log(), true);
   incidents.tell(lines.log(), true);
@@ -50,7 +50,7 @@ TEST(Incidents, OfOneCauseAreOneLineWithTheNumberOfOthers) {
 TEST(Incidents, BeyondTheFirstCausesAreNotNamed) {
   Incidents incidents;
   for (char c = 'a'; c <= 'z'; ++c) incidents.note(1, "robot 'r'", std::string(" did ") + c);
-  EXPECT_EQ(incidents.first.size(), Incidents::kCauses);
+  EXPECT_EQ(incidents.first().size(), Incidents::kCauses);
 }
 
 TEST(Incidents, OfAWorldNameTheFirstRobotAndPlacesInMillimetres) {
@@ -64,7 +64,7 @@ TEST(Incidents, OfAWorldNameTheFirstRobotAndPlacesInMillimetres) {
   run(*world.world, 10);
   ASSERT_EQ(lines.all.size(), 1U);
   EXPECT_THAT(lines.all[0], HasSubstr("controller of robot 'r0' (and 4 more) threw at tick 3: lost my way"));
-  EXPECT_EQ(world->incidents().first, lines.all);
+  EXPECT_EQ(world->incidents().first(), lines.all);
   EXPECT_EQ(world->incidents().controllers_thrown, 5U);
 
   Scene leaving(1.0);
@@ -73,8 +73,8 @@ TEST(Incidents, OfAWorldNameTheFirstRobotAndPlacesInMillimetres) {
   auto left = make(leaving);
   ASSERT_TRUE(left.world) << left.all_problems();
   run(*left.world, 40);
-  ASSERT_EQ(left->incidents().first.size(), 1U);
-  EXPECT_THAT(left->incidents().first[0],
+  ASSERT_EQ(left->incidents().first().size(), 1U);
+  EXPECT_THAT(left->incidents().first()[0],
               testing::MatchesRegex("robot 'a' \\(and 1 more\\) left the arena at \\(0\\.5[0-9]*, -0\\.123\\) at tick "
                                     "[0-9]+: stopped at the edge"));
 }

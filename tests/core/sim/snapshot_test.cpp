@@ -243,7 +243,7 @@ TEST(Snapshots, CountersOfMisbehaviourGoBackToo) {
   ASSERT_TRUE(world->restore(snapshot.value()).ok());
   EXPECT_EQ(world->incidents().commands_clamped, before.commands_clamped);
   EXPECT_EQ(world->incidents().commands_not_finite, before.commands_not_finite);
-  EXPECT_EQ(world->incidents().first, before.first);
+  EXPECT_EQ(world->incidents().first(), before.first());
   EXPECT_EQ(hashes(*world.world, 13), first);
 }
 

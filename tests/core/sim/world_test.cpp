@@ -171,9 +171,9 @@ TEST(World, AThrowingControllerStopsItsRobotByNameAndNoOther) {
   EXPECT_FALSE(space.halted(space.find_robot("good")));
   EXPECT_NEAR(space.pose(space.find_robot("bad")).x_m, 0.015, 1e-12);  // three ticks of 5 mm, then stopped
   EXPECT_GT(space.pose(space.find_robot("good")).x_m, 0.2);
-  ASSERT_EQ(world->incidents().first.size(), 1U);
-  EXPECT_NE(world->incidents().first[0].find("'bad' threw at tick 3: lost my way"), std::string::npos)
-      << world->incidents().first[0];
+  ASSERT_EQ(world->incidents().first().size(), 1U);
+  EXPECT_NE(world->incidents().first()[0].find("'bad' threw at tick 3: lost my way"), std::string::npos)
+      << world->incidents().first()[0];
 }
 
 TEST(World, CommandsThatAreNoNumbersStopTheWheelsAndAreCounted) {
@@ -189,8 +189,8 @@ TEST(World, CommandsThatAreNoNumbersStopTheWheelsAndAreCounted) {
   const double way = 2 * 0.1 * 0.75 * hal::epuck::kind().drive()->max_speed_m_s;
   const Pose pose = space.pose(space.robot(0));
   EXPECT_NEAR(std::hypot(pose.x_m, pose.y_m), way, 1e-3);
-  ASSERT_FALSE(world->incidents().first.empty());
-  EXPECT_NE(world->incidents().first[0].find("'a'"), std::string::npos);
+  ASSERT_FALSE(world->incidents().first().empty());
+  EXPECT_NE(world->incidents().first()[0].find("'a'"), std::string::npos);
 }
 
 TEST(World, ABodyThatLeavesTheArenaFollowsTheFilesPolicy) {

@@ -222,7 +222,7 @@ TEST_P(EqualToSimulation, TickByTick) {
     ASSERT_EQ(world().state(), core::RunState::Running) << world().failure();
     ASSERT_EQ(world().state_hash(), pure.world->state_hash()) << "tick " << tick;
   }
-  EXPECT_EQ(world().incidents().first, pure.world->incidents().first);
+  EXPECT_EQ(world().incidents().first(), pure.world->incidents().first());
   EXPECT_EQ(world().incidents().commands_clamped, pure.world->incidents().commands_clamped);
   run_->finish(false, "done");
   for (auto& p : peers_) EXPECT_EQ(p->ended(), "done");

@@ -28,7 +28,7 @@ TEST_P(Failures, ARobotThatLeavesTheArenaIsStoppedAtItsEdgeWhenTheFileSaysSo) {
   EXPECT_EQ(world->state(), RunState::Running) << world->failure();
   EXPECT_NEAR(pose_of(world, "a").x_m, 0.5, 1e-9);
   EXPECT_GT(world->incidents().bodies_escaped, 1U);
-  EXPECT_NE(world->incidents().first.at(0).find("'a' left the arena"), std::string::npos);
+  EXPECT_NE(world->incidents().first().at(0).find("'a' left the arena"), std::string::npos);
 }
 
 TEST_P(Failures, ARobotThatLeavesTheArenaIsTakenOutWhenTheFileSaysSo) {

@@ -266,8 +266,8 @@ TEST_P(Pushing, AnObjectThatLeavesTheArenaIsNamed) {
       continue;
     }
     EXPECT_EQ(world->state(), RunState::Running) << world->failure();
-    ASSERT_FALSE(world->incidents().first.empty());
-    EXPECT_NE(world->incidents().first[0].find("box 'box0' left the arena"), std::string::npos);
+    ASSERT_FALSE(world->incidents().first().empty());
+    EXPECT_NE(world->incidents().first()[0].find("box 'box0' left the arena"), std::string::npos);
     EXPECT_EQ(object(world).alive, policy == EscapePolicy::Stop);
     if (policy == EscapePolicy::Stop) {
       EXPECT_NEAR(object(world).x_m, 0.5, 1e-6);
