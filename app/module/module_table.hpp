@@ -107,7 +107,7 @@ inline constexpr std::array<Module, 8> kModules = {
      {"argos3", "sources for ARGoS 3: its headers and classes", 1, {}, {}, module_table::kArgosCategories, {}}}};
 
 /// A module's command as the table has it. Its command type says the same.
-consteval ModuleCommand command_in_table(std::string_view name) {
+constexpr ModuleCommand command_in_table(std::string_view name) {
   for (const Module& module : kModules) {
     for (const ModuleCommand& c : module.commands) {
       if (c.name == name) return c;
@@ -123,7 +123,7 @@ constexpr hal::CommandType command_of(const ModuleCommand& c) {
 
 /// The type of a module's command with values of class `T` (hal::command_type).
 template <class T, auto kRun>
-consteval hal::CommandType module_command(std::string_view name) {
+constexpr hal::CommandType module_command(std::string_view name) {
   const ModuleCommand c = command_in_table(name);
   return hal::command_type<T, kRun>(c.name, c.summary, c.group);
 }

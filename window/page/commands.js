@@ -31,6 +31,8 @@ export class Commands {
       toast(answer.error, 'error');
       return answer;
     }
+    // The key for both takes the other one the next time, though the run's state may not be here yet.
+    if (command.do === 'play' || command.do === 'pause') this.world.takeState({ ...this.world.state, paused: command.do === 'pause' });
     const { paused } = this.world.state;
     const later = command.do === 'press' && paused ? '; the run is paused: it may show at the next tick' : '';
     const dropped = answer.dropped_ticks > 0 ? `; ${countText(answer.dropped_ticks, 'later tick')} dropped, undo (u) brings them back` : '';

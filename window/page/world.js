@@ -21,10 +21,7 @@ export class World extends Events {
     connection.on('hello', (message) => this.takeHello(message))
       .on('scene', (message) => this.takeScene(message))
       .on('members', (message) => this.takeMembers(message))
-      .on('state', (message) => {
-        this.state = message;
-        this.emit('state', message);
-      })
+      .on('state', (message) => this.takeState(message))
       .on('states', (message) => {
         this.states = message;
         this.emit('states');
@@ -54,6 +51,11 @@ export class World extends Events {
     scene.borders ??= [];
     this.scene = scene;
     this.emit('scene', scene);
+  }
+
+  takeState(state) {
+    this.state = state;
+    this.emit('state', state);
   }
 
   takeMembers(message) {

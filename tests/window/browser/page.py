@@ -115,7 +115,11 @@ class Page:
         return self.driver.execute_script("return " + expression, *arguments)
 
     def until(self, what, expression, *arguments):
-        return eventually(what, lambda: self.js(expression, *arguments))
+        try:
+            return eventually(what, lambda: self.js(expression, *arguments))
+        except AssertionError as late:
+            seen = self.js("window.tandem && JSON.stringify({ said: document.querySelector('.said')?.textContent, state: tandem.world.state, keys: document.activeElement?.outerHTML.slice(0, 120) })")
+            raise AssertionError(f"{late}; the page: {seen}") from late
 
     def ask(self, command):
         """The answer of the run to a command."""
