@@ -195,8 +195,7 @@ void World::Impl::report_excess(std::size_t index) {
                                                                      "unit has that of its class (`tandem describe`)"));
 }
 
-/// A command of this robot that is no finite number. A robot may do that in every tick: texts are made
-/// once.
+/// A command of this robot that is no finite number. A robot may do that in every tick: texts are made once.
 void World::Impl::report_not_finite(std::uint32_t entity, const RobotGroup& group) {
   const bool more = std::any_of(group.ports.begin(), group.ports.end(), [](const hal::PortType* port) {
     return port->limit != nullptr && port->slow_down == nullptr;  // than what moves it

@@ -213,19 +213,19 @@ void World::Impl::treat_escape(BodyKey body) {
   ++incidents.bodies_escaped;
   const bool in_arena = x_m >= s.min_x_m && x_m <= s.max_x_m && y_m >= s.min_y_m && y_m <= s.max_y_m;
   const std::uint16_t region = body.is_object() ? s.object_region[body.index()] : s.bodies.region[body.index()];
-  const std::string what = !in_arena             ? "left the arena"
-                           : region == kNoRegion ? "was put where no engine has its region,"
-                                                 : "left the region of engine '" + s.regions[region].name + "'";
-  const std::string where = " " + what + " at " + hal::place_text(x_m, y_m) + at_tick();
+  const std::string what = !in_arena             ? " left the arena"
+                           : region == kNoRegion ? " was put where no engine has its region,"
+                                                 : " left the region of engine '" + s.regions[region].name + "'";
+  const auto where = [&] { return what + " at " + hal::place_text(x_m, y_m) + at_tick(); };
   switch (scenario.escape) {
     case EscapePolicy::Error:
-      fail(name_of(body) + where +
+      fail(name_of(body) + where() +
            (in_arena ? ". Give the region's side a wall or a gate, or choose escape=\"stop\" or escape=\"remove\" "
                        "on <arena>."
                      : ". Give the arena walls, or choose escape=\"stop\" or escape=\"remove\" on <arena>."));
       break;
     case EscapePolicy::Remove:
-      incidents.note(number_of(body), name_of(body), where + ": removed");
+      incidents.note(number_of(body), name_of(body), where() + ": removed");
       if (body.is_object()) {
         space.remove_object(space.object(body.index()));
       } else {
@@ -235,7 +235,8 @@ void World::Impl::treat_escape(BodyKey body) {
       s.bodies_changed = true;
       return;
     case EscapePolicy::Stop:
-      incidents.note(number_of(body), name_of(body), where + ": stopped at the edge");
+      if (!incidents.note_again(number_of(body), what))
+        incidents.note(number_of(body), name_of(body), where() + ": stopped at the edge");
       break;
   }
   x_m = std::clamp(x_m, s.min_x_m, s.max_x_m);

@@ -2,6 +2,7 @@
 #include <atomic>
 #include <cstdlib>
 #include <gtest/gtest.h>
+#include <limits>
 #include <new>
 
 #include "hal/device/range_and_bearing.hpp"
@@ -60,6 +61,31 @@ TEST(World, AllocatesNothingAfterTheFirstSteps) {
     EXPECT_EQ(allocations.load() - before, 0U) << threads << " threads";
     EXPECT_EQ(world->state(), RunState::Running) << world->failure();
   }
+}
+
+TEST(World, AllocatesNothingForMisbehaviourThatGoesOn) {
+  Scene scene = footbot_scene("dynamics2d", 8.0);
+  for (int i = 0; i < 20; ++i) add_footbot(scene, "r" + std::to_string(i), 3.8, -3.8 + 0.36 * i, 0);
+  scene.scenario.escape = EscapePolicy::Stop;
+  auto world = make(scene);
+  ASSERT_TRUE(world.world) << world.all_problems();
+  world->start();
+  const auto step = [&] {
+    for (int i = 0; i < 20; ++i) {
+      const std::string id = "r" + std::to_string(i);
+      command<hal::WheelSpeeds>(world, id).set(0.1, 0.1);
+      command<hal::TurretDrive>(world, id).turn(std::numeric_limits<double>::quiet_NaN());
+    }
+    world->step();
+  };
+  for (int i = 0; i < 30; ++i) step();
+  const auto escaped = world->incidents().bodies_escaped, not_finite = world->incidents().commands_not_finite;
+  const std::uint64_t before = allocations.load();
+  for (int i = 0; i < 50; ++i) step();
+  EXPECT_EQ(allocations.load() - before, 0U);
+  EXPECT_EQ(world->incidents().bodies_escaped - escaped, 1000U);
+  EXPECT_EQ(world->incidents().commands_not_finite - not_finite, 1000U);
+  EXPECT_EQ(world->state(), RunState::Running) << world->failure();
 }
 
 TEST(World, AllocatesNothingForFootbotsThatScanTalkAndGrip) {
